@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/did_you_mean.hpp"
+#include "base/split.hpp"
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "luciole/error.hpp"
@@ -24,17 +25,6 @@ namespace {
 /// The values of which a relative light error is a share are at least this. Nabata and others (2016) judge
 /// their errors so.
 constexpr float kRelativeFloor = 0.05f;
-
-std::vector<std::string> partsOf(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
 
 template <class Number>
 std::optional<Number> numberIn(const std::string& text) {
@@ -59,9 +49,9 @@ Number numberOf(const std::string& text) {
 std::vector<int> wholeNumbers(const std::string& text, char separator, std::size_t count,
                               const std::string& expected) {
   std::vector<int> numbers;
-  for (const std::string& part : partsOf(text, separator))
+  for (const std::string& part : split(text, separator))
     if (const std::optional<int> number = numberIn<int>(part)) numbers.push_back(*number);
-  if (numbers.size() != count || partsOf(text, separator).size() != count) refuse(expected, text);
+  if (numbers.size() != count || split(text, separator).size() != count) refuse(expected, text);
   return numbers;
 }
 
@@ -94,7 +84,7 @@ void setExposure(const std::string& text, RenderSettings& settings) {
 
 /// A number from 0 to 1, or a fraction such as 1/256.
 float shareIn(const std::string& text) {
-  const std::vector<std::string> parts = partsOf(text, '/');
+  const std::vector<std::string> parts = split(text, '/');
   const std::optional<double> over = numberIn<double>(parts.front());
   const std::optional<double> under = parts.size() == 1 ? 1.0 : numberIn<double>(parts[1]);
   if (parts.size() <= 2 && over && under && *under > 0 && std::isfinite(*under) && *over / *under >= 0 &&
@@ -123,7 +113,7 @@ std::vector<std::pair<std::string, Aov>> layerNames() {
 }
 
 void setAovs(const std::string& text, RenderSettings& settings) {
-  for (const std::string& name : partsOf(text, ','))
+  for (const std::string& name : split(text, ','))
     for (const auto& [known, aov] : layerNames())
       if (known == name && !settings.wants(aov)) settings.aovs.push_back(aov);
 }
@@ -168,7 +158,6 @@ std::vector<NamedSetting> viewSettings() {
       of(text("size", "",
               "WxH pixels, or W, as high as the scene's shape makes it (default: the scene's, or 1280x720)"),
          setSize),
-      text("camera", "", "one of the scene's cameras, by name or index (default: the first)"),
       of(text("crop", "", "X,Y,W,H: only this part of the picture"), setCrop),
       of(choice("shading", {"flat", "gouraud", "phong"}, "phong",
                 "what is interpolated over a triangle: nothing, colours, normals"),
@@ -331,7 +320,7 @@ std::vector<NamedSetting> fileSettings() {
 }
 
 std::string choiceFault(const NamedSetting& setting, const std::string& value) {
-  for (const std::string& part : setting.is_list ? partsOf(value, ',') : std::vector{value})
+  for (const std::string& part : setting.is_list ? split(value, ',') : std::vector{value})
     if (std::find(setting.choices.begin(), setting.choices.end(), part) == setting.choices.end())
       return fmt::format("'{}' is none of {}{}", part, fmt::join(setting.choices, ", "),
                          didYouMean(part, setting.choices));

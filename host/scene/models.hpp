@@ -28,9 +28,6 @@ static_assert(hasRowsOfKernels());
 inline constexpr std::array kModelNames{EACH_MODEL(MODEL_NAME)};
 #undef MODEL_NAME
 
-/// Whether the model's highlights are those of facets, of a roughness by the shininess: see takeFacets().
-constexpr bool takesFacets(Model model) { return model == Model::kCookTorrance || model == Model::kWard; }
-
 /// Upper bounds of a model's reflection of an unshadowed light of 1, for any directions, before rounding.
 struct ModelBounds {
   double diffuse;   ///< a factor of the diffuse colour

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <tuple>
+#include <utility>
+
+#include "scene/corners.hpp"
 
 namespace luciole {
 namespace {
@@ -63,34 +65,9 @@ std::vector<std::uint32_t> weld(const Mesh& mesh, bool across_seams) {
   return first;
 }
 
-/// Joins corners into groups that share a tangent (union by the lower number, with path halving).
-struct Groups {
-  std::vector<std::uint32_t> parent;
-
-  std::uint32_t find(std::uint32_t corner) {
-    while (parent[corner] != corner) corner = parent[corner] = parent[parent[corner]];
-    return corner;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
-};
-
-/// An edge of a triangle between two welded vertices, the lower first.
-struct Edge {
-  std::uint32_t low, high;
-  std::uint32_t low_corner, high_corner;  ///< 3 · triangle + corner
-
-  bool operator<(const Edge& other) const {
-    return std::tie(low, high, low_corner) < std::tie(other.low, other.high, other.low_corner);
-  }
-};
-
 /// Whether texture coordinates change alike along two triangles' edge, as where a texture goes on beyond a
 /// seam.
-bool goesOn(const Mesh& mesh, const Edge& a, const Edge& b) {
+bool goesOn(const Mesh& mesh, const CornerEdge& a, const CornerEdge& b) {
   const std::vector<glm::vec2>& uvs = uvsOf(mesh);
   const auto uv = [&](std::uint32_t corner) {
     return glm::dvec2(uvs[mesh.triangles[corner / 3][int(corner % 3)]]);
@@ -100,28 +77,18 @@ bool goesOn(const Mesh& mesh, const Edge& a, const Edge& b) {
   return glm::distance(step_a, step_b) <= 0x1p-10 * (glm::length(step_a) + glm::length(step_b));
 }
 
-Groups groupCorners(const Mesh& mesh, const std::vector<Facet>& facets,
-                    const std::vector<std::uint32_t>& welded) {
-  Groups groups;
-  groups.parent.resize(3 * mesh.triangles.size());
-  std::iota(groups.parent.begin(), groups.parent.end(), 0u);
-  std::vector<Edge> edges;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (facets[t].tangent == glm::dvec3(0.0)) continue;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const std::uint32_t next = (i + 1) % 3;
-      const std::uint32_t a = welded[mesh.triangles[t][int(i)]], b = welded[mesh.triangles[t][int(next)]];
-      if (a < b) edges.push_back({a, b, 3 * t + i, 3 * t + next});
-      if (b < a) edges.push_back({b, a, 3 * t + next, 3 * t + i});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
+/// Corners that share a tangent are of one group.
+CornerGroups groupCorners(const Mesh& mesh, const std::vector<Facet>& facets,
+                          const std::vector<std::uint32_t>& welded) {
+  CornerGroups groups(3 * mesh.triangles.size());
+  const std::vector<CornerEdge> edges = sortedEdges(
+      mesh.triangles.size(), [&](std::uint32_t t) { return facets[t].tangent != glm::dvec3(0.0); },
+      [&](std::uint32_t corner) { return welded[mesh.triangles[corner / 3][int(corner % 3)]]; });
   for (std::size_t begin = 0; begin < edges.size();) {
     std::size_t end = begin;
-    std::array<const Edge*, 2> of_side{};
-    for (; end < edges.size() && edges[end].low == edges[begin].low && edges[end].high == edges[begin].high;
-         ++end) {
-      const Edge*& other = of_side[facets[edges[end].low_corner / 3].mirrored];
+    std::array<const CornerEdge*, 2> of_side{};
+    for (; end < edges.size() && edges[end].joins(edges[begin]); ++end) {
+      const CornerEdge*& other = of_side[facets[edges[end].low_corner / 3].mirrored];
       if (other && goesOn(mesh, *other, edges[end])) {
         groups.join(other->low_corner, edges[end].low_corner);
         groups.join(other->high_corner, edges[end].high_corner);
@@ -147,7 +114,7 @@ std::vector<glm::vec4> cornerTangents(const Mesh& mesh, const std::vector<bool>&
   for (std::size_t t = 0; t < facets.size(); ++t)
     if (wanted[t]) facets[t] = facetOf(mesh, mesh.triangles[t]);
   const std::vector<std::uint32_t> welded = weld(mesh, across_seams);
-  Groups groups = groupCorners(mesh, facets, welded);
+  CornerGroups groups = groupCorners(mesh, facets, welded);
   std::vector<glm::dvec3> sums(3 * facets.size());
   std::vector<std::uint32_t> group_of_vertex(mesh.positions.size(), kNone);  // any one, of a welded vertex
   for (std::uint32_t corner = 0; corner < sums.size(); ++corner) {
@@ -172,24 +139,6 @@ std::vector<glm::vec4> cornerTangents(const Mesh& mesh, const std::vector<bool>&
     tangents[corner] = glm::vec4(tangent, facets[group / 3].mirrored ? -1.0f : 1.0f);
   }
   return tangents;
-}
-
-template <class T>
-void copyElement(std::size_t from, std::vector<T>& values) {
-  if (!values.empty()) values.push_back(T(values[from]));
-}
-
-std::uint32_t copyVertex(std::uint32_t from, Mesh& mesh) {
-  copyElement(from, mesh.positions);
-  copyElement(from, mesh.normals);
-  copyElement(from, mesh.uvs);
-  copyElement(from, mesh.emission_uvs);
-  copyElement(from, mesh.normal_uvs);
-  copyElement(from, mesh.lightmap_uvs);
-  copyElement(from, mesh.tangents);
-  copyElement(from, mesh.colors);
-  copyElement(from, mesh.sources);
-  return std::uint32_t(mesh.positions.size() - 1);
 }
 
 /// Adds the tangents that corners lack: those of materials with a normal map, or all, across seams.

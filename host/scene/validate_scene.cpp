@@ -15,7 +15,7 @@
 #include "base/text_file.hpp"
 #include "base/trace.hpp"
 #include "luciole/error.hpp"
-#include "scene/check_triangles.hpp"
+#include "scene/check_vertices.hpp"
 #include "scene/models.hpp"
 #include "scene/place_limits.hpp"
 #include "scene/posing.hpp"
@@ -163,6 +163,18 @@ std::string trianglesFault(const Mesh& mesh) {
 /// The largest magnitude of a mesh's coordinates, in its own space; infinite or NaN where one is.
 float reachOf(const Mesh& mesh) { return std::bit_cast<float>(largestOf(mesh.positions, kMagnitude)); }
 
+/// Of what a mesh has of its vertices beside positions and normals, and of who refers to them.
+std::string verticesFault(const Mesh& mesh) {
+  return firstOf(
+      {vertexFault("uvs", mesh.uvs, mesh), vertexFault("emission_uvs", mesh.emission_uvs, mesh),
+       vertexFault("tangents", mesh.tangents, mesh), vertexFault("normal_uvs", mesh.normal_uvs, mesh),
+       vertexFault("colors", mesh.colors, mesh),
+       mesh.lightmap_uvs.empty()  // any numbers, see lightMapUvs()
+           ? ""
+           : sizeFault("lightmap_uvs", mesh.lightmap_uvs.size(), mesh.positions.size(), "positions"),
+       trianglesFault(mesh)});
+}
+
 /// reach: of the mesh.
 std::string meshFault(const Scene& scene, const Mesh& mesh, float reach) {
   const std::size_t vertices = mesh.positions.size();
@@ -171,13 +183,7 @@ std::string meshFault(const Scene& scene, const Mesh& mesh, float reach) {
                ? ""
                : magnitudeFault("positions", mesh.positions, float(kLargestNumber)),
            sizeFault("normals", mesh.normals.size(), vertices, "positions"),
-           vertexFault("normals", mesh.normals, mesh), vertexFault("uvs", mesh.uvs, mesh),
-           vertexFault("emission_uvs", mesh.emission_uvs, mesh), vertexFault("tangents", mesh.tangents, mesh),
-           vertexFault("normal_uvs", mesh.normal_uvs, mesh), vertexFault("colors", mesh.colors, mesh),
-           mesh.lightmap_uvs.empty()  // any numbers, see lightMapUvs()
-               ? ""
-               : sizeFault("lightmap_uvs", mesh.lightmap_uvs.size(), vertices, "positions"),
-           trianglesFault(mesh),
+           vertexFault("normals", mesh.normals, mesh), verticesFault(mesh),
            sizeFault("triangle_materials", mesh.triangle_materials.size(), mesh.triangles.size(),
                      "triangles"),
            indexFault("triangle_materials", mesh.triangle_materials, "materials", scene.materials.size())});
@@ -503,8 +509,8 @@ std::string cameraFault(const Camera& camera) {
   return camera.far > camera.near ? "" : wrong("far", camera.far, "above near");
 }
 
-void checkTriangles(const Scene& scene, std::size_t mesh) {
-  if (const std::string fault = trianglesFault(scene.meshes[mesh]); !fault.empty())
+void checkVertices(const Scene& scene, std::size_t mesh) {
+  if (const std::string fault = verticesFault(scene.meshes[mesh]); !fault.empty())
     fail(scene, fmt::format("meshes[{}]", mesh), fault);
 }
 

@@ -123,6 +123,8 @@ def test_a_reference_agrees_and_takes_pixels() -> None:
     np.testing.assert_allclose(picture.rgb, whole, rtol=1e-5)
     with pytest.raises(luciole.InputError):
         luciole.reference(scene, pixels=[(16, 0)], size=(16, 12))
+    with pytest.raises(luciole.InputError, match="screen"):
+        luciole.reference(scene, size=(16, 12), screen="hatching.clh")
 
 
 def test_a_renderer_makes_the_bits_of_single_pictures() -> None:
@@ -161,6 +163,8 @@ def test_settings_for_a_picture_leave_the_scene_alone() -> None:
     before = luciole.render(scene, size=(16, 16)).rgb
     luciole.render(scene, size=(16, 16), model="ward", cast_shadows="all", shadows="exact")
     np.testing.assert_array_equal(luciole.render(scene, size=(16, 16)).rgb, before)
+    with pytest.raises(luciole.InputError, match="none.clh"):
+        luciole.render(scene, size=(16, 16), model="none.clh", cast_shadows="all")
     assert not scene.lights[0].cast_shadows.any()
 
 

@@ -23,6 +23,9 @@ inline constexpr std::size_t kMostUserModels = 16;
 inline constexpr Model userModel(std::size_t index) { return Model(kNumberOfModels + index); }
 inline constexpr bool isUserModel(Model model) { return std::size_t(model) >= kNumberOfModels; }
 
+/// Whether the model's highlights are those of facets, of a roughness by the shininess: see takeFacets().
+constexpr bool takesFacets(Model model) { return model == Model::kCookTorrance || model == Model::kWard; }
+
 /// The model's name in scene files: "phong" …; "a file's" for a user's.
 const char* modelName(Model model);
 

@@ -240,8 +240,9 @@ void takeFacets(Scene& scene);
 
 /// Fills Mesh::normals of meshes that have none: smooth, the mean of the unit normals of the triangles that
 /// use a vertex, each weighted by its angle there (Thürmer & Wüthrich, "Computing Vertex Normals from
-/// Polygonal Facets", 1998). Triangles that share no vertex get flat normals. Throws InputError where a
-/// triangle refers to a vertex that there isn't. O(vertices + triangles).
+/// Polygonal Facets", 1998). Triangles that share no vertex get flat normals. Where triangles meet at more
+/// than 60 degrees, as a box's do, vertices are duplicated, so that the edge stays sharp. Throws InputError
+/// where arrays' sizes don't fit or a triangle refers to a vertex that there isn't. O(n log n).
 void addNormals(Scene& scene);
 
 /// Computes missing tangents at vertices of materials with a normal map, as M. Mikkelsen's MikkTSpace does

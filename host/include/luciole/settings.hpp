@@ -183,7 +183,7 @@ struct NamedSetting {
   /// Numbers: the least and the greatest. Both 0: not a number.
   double least = 0, greatest = 0;
   bool is_whole = false;  ///< a whole number
-  /// Takes the value. Null: of a file, or what depends on the scene: its camera, models and shadow casters.
+  /// Takes the value. Null: of a file, or what depends on the scene: models and shadow casters.
   void (*set)(const std::string& value, RenderSettings& settings) = nullptr;
   void (*set_file)(const std::string& value, WriteOptions& options) = nullptr;  ///< the same of a file
 };

@@ -71,7 +71,7 @@ def array(
         made = np.ascontiguousarray(given, dtype=wanted)
     if finite and wanted.kind == "f":
         refuse_non_finite(made, name)
-    return made.reshape(given.shape)
+    return made.reshape(given.shape)  # of one number it has made a row
 
 
 def refuse_non_finite(values: Array, name: str) -> None:
@@ -132,3 +132,10 @@ def whole(value: object, name: str, least: int, greatest: int) -> int:
         return int(value)
     got = value if isinstance(value, (int, float, np.number)) else type(value).__name__
     raise InputError(f"{name}: expected a whole number from {least} to {greatest}, got {got}")
+
+
+def srgb_codes(pixels: Array) -> Doubles:
+    """The sRGB codes, from 0 to 1, of linear light (IEC 61966-2-1); NaN is black."""
+    light = np.clip(np.nan_to_num(pixels.astype(np.float64), nan=0.0), 0, 1)
+    codes: Doubles = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    return codes

@@ -37,20 +37,6 @@ def _length(value: Array, name: str) -> int:
     raise InputError(f"{name}: expected (N, 3) float32, got {value.shape}")
 
 
-@dataclass
-class _Lights:
-    """What all kinds share. Arrays of float32 and float64 are taken as they are; others are converted.
-
-    An array of one row for all lights may be a single value: ``color=(1, 0.9, 0.8)``, ``range=5``.
-    """
-
-    def _columns(self) -> "_luciole.LightColumns":
-        raise NotImplementedError
-
-    def __len__(self) -> int:
-        raise NotImplementedError
-
-
 def _columns(
     kind: int,
     count: int,
@@ -106,6 +92,24 @@ def _columns(
     )
 
 
+class _Lights:
+    """What all kinds share. Arrays of float32 and float64 are taken as they are; others are converted.
+
+    An array of one row for all lights may be a single value: ``color=(1, 0.9, 0.8)``, ``range=5``.
+    """
+
+    def _shared(self) -> dict[str, Any]:
+        """The members that mean the same in all kinds that have them."""
+        of_kind = ("direction", "cutoff", "inner_cone", "angle")
+        return {name: value for name, value in vars(self).items() if name not in of_kind}
+
+    def _columns(self) -> "_luciole.LightColumns":
+        raise NotImplementedError
+
+    def __len__(self) -> int:
+        raise NotImplementedError
+
+
 @dataclass
 class PointLights(_Lights):
     """Lights that shine from a point in all directions.
@@ -136,20 +140,7 @@ class PointLights(_Lights):
         return _count(self.position, "lights.position")
 
     def _columns(self) -> "_luciole.LightColumns":
-        return _columns(
-            POINT,
-            len(self),
-            position=self.position,
-            color=self.color,
-            ambient=self.ambient,
-            specular=self.specular,
-            attenuation=self.attenuation,
-            range=self.range,
-            window=self.window,
-            radius=self.radius,
-            cast_shadows=self.cast_shadows,
-            group=self.group,
-        )
+        return _columns(POINT, len(self), **self._shared())
 
 
 @dataclass
@@ -181,25 +172,15 @@ class SpotLights(_Lights):
 
     def _columns(self) -> "_luciole.LightColumns":
         count = len(self)
-        cutoff = _angles(self.cutoff, "cutoff", count, 90)
+        inner = None if self.inner_cone is None else _angles(self.inner_cone, "inner_cone", count, 90)
         return _columns(
             SPOT,
             count,
-            position=self.position,
             direction=_directions(self.direction, count),
-            color=self.color,
-            ambient=self.ambient,
-            specular=self.specular,
-            attenuation=self.attenuation,
-            range=self.range,
-            window=self.window,
-            falloff="exponent" if self.inner_cone is None else "cone",
-            cutoff=cutoff,
-            inner_cone=None if self.inner_cone is None else _angles(self.inner_cone, "inner_cone", count, 90),
-            exponent=self.exponent,
-            radius=self.radius,
-            cast_shadows=self.cast_shadows,
-            group=self.group,
+            cutoff=_angles(self.cutoff, "cutoff", count, 90),
+            inner_cone=inner,
+            falloff="exponent" if inner is None else "cone",
+            **self._shared(),
         )
 
 
@@ -229,12 +210,8 @@ class DirectionalLights(_Lights):
             DIRECTIONAL,
             count,
             direction=_directions(self.direction, count),
-            color=self.color,
-            ambient=self.ambient,
-            specular=self.specular,
             half_angle=_angles(self.angle, "angle", count, 90) / 2,
-            cast_shadows=self.cast_shadows,
-            group=self.group,
+            **self._shared(),
         )
 
 
@@ -271,8 +248,8 @@ def set_lights(scene: "_luciole.Scene", value: object) -> None:
 
 
 def get_lights(scene: "_luciole.Scene") -> list[Lights]:
-    """A scene's lights as arrays, copies, by kind: points, spots, directional ones. Lights that differ in how they fade
-    within a kind are arrays of their own."""
+    """A scene's lights as arrays, copies, by kind. Lights of a kind that differ in how they fade, or in their group, are
+    arrays of their own."""
     found: list[Lights] = []
     for window, falloff, group in scene.light_families():
         for kind in (POINT, SPOT, DIRECTIONAL):

@@ -9,18 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from luciole import _luciole
-from luciole._arrays import MOST_SIDE, Array, Doubles, Floats, array, listed, whole
+from luciole._arrays import MOST_SIDE, Array, Doubles, Floats, array, listed, srgb_codes, whole
 from luciole._errors import InputError, MachineError
 from luciole.lights import lights_of
 from luciole.scene import Camera, Scene
 from luciole.settings import (
     FileKeywords,
-    LightKeywords,
     Path,
     PictureKeywords,
     initial_texts,
     keyword_help,
     paths_of,
+    rows,
     texts_of,
 )
 
@@ -103,15 +103,14 @@ class Picture:
 
     @property
     def stats(self) -> dict[str, Any]:
-        """What the picture cost, as ``--stats`` writes it: stages and their milliseconds, counts, memory, light errors."""
+        """What the picture cost, as ``--stats`` writes it: stages and their milliseconds, counts, memory, light errors. The counts
+        of lights in pixels' reach, which take time, aren't made."""
         made: dict[str, Any] = json.loads(self._handle.stats)
         return made
 
     def srgb8(self) -> npt.NDArray[np.uint8]:
         """(H, W, 3) uint8: sRGB codes, rounded to nearest, clipped to white."""
-        light = np.clip(np.nan_to_num(self.rgb.astype(np.float64), nan=0.0), 0, 1)
-        codes = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
-        made: npt.NDArray[np.uint8] = np.rint(255 * codes).astype(np.uint8)
+        made: npt.NDArray[np.uint8] = np.rint(255 * srgb_codes(self.rgb)).astype(np.uint8)
         return made
 
     def save(self, path: Path, **keywords: Unpack[FileKeywords]) -> None:
@@ -143,8 +142,6 @@ _METADATA = [("Software", "luciole")]
 
 
 def _file_texts() -> dict[str, str]:
-    from luciole.settings import rows
-
     return {row["name"]: row["initial"] for row in rows(True).values()}
 
 
@@ -347,9 +344,13 @@ def reference(scene: Scene, pixels: Any = None, **keywords: Unpack[PictureKeywor
     """A picture in double precision, every light on every pixel, shadows by rays: slow and right.
 
     pixels: (n, 2) whole numbers, x and y from the top left; then the colours are (n, 3). None: all, (H, W, 3) float64, linear.
-    Takes about a millisecond for a pixel, a sample and a thousand lights. Keywords: as render() has them.
+    Takes about a millisecond for a pixel, a sample and a thousand lights. Keywords: as render() has them, of those that concern
+    the view, the model and shadow casters; exposure isn't applied.
     """
     made = _scene(scene, "reference")
+    for name in ("surface", "screen"):
+        if keywords.get(name):
+            raise InputError(f"{name}: is of render(); the command luciole reference takes --surface")
     request = _request("reference", keywords, made)
     if pixels is not None:
         places = array(pixels, "pixels", ("N", 2), dtype=np.int32)
@@ -438,8 +439,7 @@ def compare(a: Any, b: Any, metrics: Sequence[str] | None = None) -> dict[str, A
 
 def _codes(pixels: Array) -> Floats:
     """sRGB from 0 to 1, three channels."""
-    light = np.clip(np.nan_to_num(pixels[:, :, :3].astype(np.float64)), 0, 1)
-    codes = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    codes = srgb_codes(pixels[:, :, :3])
     return np.ascontiguousarray(np.broadcast_to(codes, (*codes.shape[:2], 3)), dtype=np.float32)
 
 

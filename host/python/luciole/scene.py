@@ -15,10 +15,8 @@ from luciole.lights import Lights, get_lights, set_lights
 
 #: A color: three numbers, or one for all three.
 Color: TypeAlias = Sequence[float] | float
-MODELS = ("phong", "blinn-phong", "toon", "cook-torrance", "oren-nayar", "ward")
-#: Degrees between triangles beyond which an edge is sharp, for meshes without normals.
-CREASE = 60.0
-_CREASE_COSINE = float(np.cos(np.radians(CREASE)))
+#: The names of models that materials and pictures may have.
+MODELS: tuple[str, ...] = _luciole.MODELS
 #: A material's textures.
 _MAPS = ("diffuse_map", "emission_map", "normal_map", "alpha_map")
 
@@ -56,7 +54,7 @@ class Mesh:
     """A triangle mesh, and where it stands.
 
     vertices: (V, 3), metres. triangles: (T, 3), indices of vertices; counter-clockwise ones face the viewer. normals: (V, 3);
-    None: smooth ones, but for edges sharper than CREASE, 60 degrees. uvs: (V, 2), (0, 0) is a texture's top left corner.
+    None: smooth ones, but for edges of more than 60 degrees. uvs: (V, 2), (0, 0) is a texture's top left corner.
     colors: (V, 3) or (V, 4), linear, or uint8 in sRGB; they multiply the material's. material: one, or a list of which
     triangle_materials (T,) has each triangle's.
     transforms: (4, 4) or (K, 4, 4), object to world, an instance each; None: one where it is.
@@ -94,12 +92,10 @@ def _of_trimesh(mesh: Any, transforms: Any) -> Mesh:
     if kind == "vertex":
         made.colors = np.asarray(visual.vertex_colors, dtype=np.uint8)
     elif kind == "face":
-        # Neighbours have other colours at a vertex that they share, but its normal.
-        vertices = array(mesh.vertices, "mesh.vertices", ("V", 3))
-        faces = array(mesh.faces, "mesh.triangles", ("T", 3), dtype=np.uint32)
-        _, split, normals = _luciole.split_at_creases(vertices, faces, _CREASE_COSINE)
-        made.vertices, made.normals = vertices[faces.ravel()], normals[split.ravel()]
-        made.triangles = np.arange(faces.size).reshape(-1, 3)
+        # Corners of their own, and so flat, as trimesh shows faces of a colour.
+        corners = np.asarray(mesh.faces).reshape(-1)
+        made.vertices = np.asarray(mesh.vertices)[corners]
+        made.triangles = np.arange(len(corners)).reshape(-1, 3)
         made.colors = np.repeat(np.asarray(visual.face_colors, dtype=np.uint8), 3, axis=0)
     elif kind == "texture":
         made.material = _trimesh_material(visual.material)
@@ -352,19 +348,12 @@ class _Builder:
             if chosen.size > 0 and not (0 <= chosen.min() and chosen.max() < len(materials)):
                 raise InputError(f"mesh.triangle_materials: expected 0 to {len(materials) - 1}")
             of_triangle = materials[chosen]
-        normals, uvs, colors = rows(mesh.normals, "normals", 3), rows(mesh.uvs, "uvs", 2), _colors(mesh.colors, sides)
-        if normals is None:
-            sources, triangles, normals = _luciole.split_at_creases(vertices, triangles, _CREASE_COSINE)
-            vertices = vertices[sources]
-            uvs, colors = (None if given is None else given[sources] for given in (uvs, colors))
-        else:
-            normals = _unit(normals)
         index = self.scene.add_mesh(
             name=mesh.name,
             positions=vertices,
-            normals=normals,
-            uvs=uvs,
-            colors=colors,
+            normals=_unit(rows(mesh.normals, "normals", 3)),
+            uvs=rows(mesh.uvs, "uvs", 2),
+            colors=_colors(mesh.colors, sides),
             triangles=triangles,
             triangle_materials=of_triangle,
         )
@@ -376,8 +365,10 @@ def _transforms(value: object, name: str) -> Doubles:
     return array(value, name, ("K", 4, 4), (4, 4), dtype=np.float64).reshape(-1, 4, 4)
 
 
-def _unit(given: Array) -> Array:
+def _unit(given: Array | None) -> Array | None:
     """Normals of length 1."""
+    if given is None:
+        return None
     lengths = np.linalg.norm(given, axis=1, keepdims=True)
     if given.size > 0 and not lengths.min() > 0:
         raise InputError(f"mesh.normals[{int(lengths.argmin())}]: expected a direction of any length but 0")

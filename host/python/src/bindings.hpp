@@ -5,7 +5,6 @@
 namespace luciole::python {
 
 // Each adds its part to the module.
-void bindCreases(nanobind::module_& module);
 void bindScene(nanobind::module_& module);
 void bindPictures(nanobind::module_& module);
 void bindGBuffers(nanobind::module_& module);

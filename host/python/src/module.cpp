@@ -73,7 +73,6 @@ NB_MODULE(_luciole, module) {
       nullptr);
   module.def("devices", devices);
   module.def("settings", settings);
-  luciole::python::bindCreases(module);
   luciole::python::bindScene(module);
   luciole::python::bindGBuffers(module);
   luciole::python::bindPictures(module);

@@ -41,52 +41,51 @@ const std::string& valueOf(const Request& request, std::string_view name) {
   return found == request.values.end() ? none : found->second;
 }
 
-/// The changes of a scene that a request means for its picture alone.
-class ChangeForPicture {
- public:
-  ChangeForPicture(const Request& request, Scene& scene) : scene_(scene) {
-    const std::string& shadows = valueOf(request, "shadows");
-    for (const Light& light : scene.lights) marks_.push_back(light.shadow);
-    castShadows(valueOf(request, "cast_shadows"), request.shadows_given && shadows != "off", scene);
-    const std::string& model = valueOf(request, "model");
-    const bool is_file = std::string_view(model).ends_with(kShaderExtension);
-    const bool takes_facets = model == "cook-torrance" || model == "ward";
-    if (!is_file && !takes_facets) return;
-    models_ = scene.user_models;
-    materials_ = scene.materials;
-    has_materials_ = true;
-    if (takes_facets) takeFacets(scene);
-    if (is_file) model_ = addUserModel(model, scene);
-  }
-  ~ChangeForPicture() {
-    for (std::size_t i = 0; i < marks_.size(); ++i) scene_.lights[i].shadow = marks_[i];
-    if (!has_materials_) return;
-    scene_.user_models = std::move(models_);
-    scene_.materials = std::move(materials_);
-  }
-  ChangeForPicture(const ChangeForPicture&) = delete;
-  ChangeForPicture& operator=(const ChangeForPicture&) = delete;
-
-  /// Of a file that the request names.
-  const std::optional<Model>& model() const { return model_; }
-
- private:
-  Scene& scene_;
-  std::vector<bool> marks_;
-  std::vector<Shader> models_;
-  std::vector<Material> materials_;
-  bool has_materials_ = false;
-  std::optional<Model> model_;
-};
-
 Model modelNamed(const std::string& name) {
   for (std::size_t i = 0; i < kNumberOfModels; ++i)
     if (name == modelName(Model(i))) return Model(i);
   throw InputError("model: '" + name + "' is no model, and no file *.clh");
 }
 
-/// Ends a picture on Ctrl-C, and tells how far it is. It is called without Python's lock, in the thread that
-/// asked.
+/// The changes of a scene that a request means for its picture alone.
+class ChangeForPicture {
+ public:
+  /// What may be refused comes first: then nothing has been changed.
+  ChangeForPicture(const Request& request, Scene& scene)
+      : scene_(scene), model_count_(scene.user_models.size()) {
+    const std::string& model = valueOf(request, "model");
+    model_ =
+        std::string_view(model).ends_with(kShaderExtension) ? addUserModel(model, scene) : modelNamed(model);
+    if (takesFacets(model_)) {
+      materials_ = scene.materials;
+      takeFacets(scene);
+    }
+    const std::string &shadows = valueOf(request, "shadows"), &casters = valueOf(request, "cast_shadows");
+    const bool asked_for = request.shadows_given && shadows != "off";
+    if (casters.empty() && !asked_for) return;
+    for (const Light& light : scene.lights) marks_.push_back(light.shadow);
+    castShadows(casters, asked_for, scene);
+  }
+  ~ChangeForPicture() {
+    for (std::size_t i = 0; i < marks_.size(); ++i) scene_.lights[i].shadow = marks_[i];
+    if (materials_) scene_.materials = std::move(*materials_);
+    scene_.user_models.resize(model_count_);
+  }
+  ChangeForPicture(const ChangeForPicture&) = delete;
+  ChangeForPicture& operator=(const ChangeForPicture&) = delete;
+
+  Model model() const { return model_; }
+
+ private:
+  Scene& scene_;
+  std::size_t model_count_;
+  Model model_ = Model::kPhong;
+  std::optional<std::vector<Material>> materials_;
+  std::vector<bool> marks_;
+};
+
+/// Ends a picture on Ctrl-C, which Python's main thread is told of, and tells how far it is. It is called
+/// without Python's lock: in the thread that asked, or for a reference in any.
 std::function<void(int, int)> reporterOf(const Request& request) {
   return [progress = request.progress.ptr()](int done, int all) {
     const nb::gil_scoped_acquire locked;
@@ -114,11 +113,11 @@ int bandHeight(const RenderSettings& settings, std::size_t lights) {
   return work < kLongPicture || settings.wants(Aov::kListLength) ? 0 : kBandHeight;
 }
 
-RenderSettings settingsOf(const Request& request, const Scene& scene, const std::optional<Model>& model) {
+RenderSettings settingsOf(const Request& request, const Scene& scene, Model model) {
   RenderSettings settings;
   if (scene.size) settings.size = *scene.size;
   applySettings(request.values, settings);
-  settings.shade.model = model ? *model : modelNamed(valueOf(request, "model"));
+  settings.shade.model = model;
   if (request.camera)
     settings.camera = *request.camera;
   else if (std::size_t(request.camera_index) < scene.cameras.size())
@@ -129,7 +128,6 @@ RenderSettings settingsOf(const Request& request, const Scene& scene, const std:
     settings.surfaces.push_back(readShader(path, ShaderKind::kSurface));
   for (const std::string& path : request.screens)
     settings.screens.push_back(readShader(path, ShaderKind::kScreen));
-  settings.count_lights = valueOf(request, "count_lights") == "on";
   settings.on_pass = reporterOf(request);
   return settings;
 }
@@ -223,6 +221,9 @@ Request requestOf(const std::map<std::string, std::string>& values, bool shadows
 }  // namespace
 
 void bindPictures(nb::module_& module) {
+  nb::list models;
+  for (std::size_t i = 0; i < kNumberOfModels; ++i) models.append(modelName(Model(i)));
+  module.attr("MODELS") = nb::tuple(models);
   nb::class_<Request>(module, "Request");
   module.def("request", requestOf, nb::arg("values"), nb::arg("shadows_given"), nb::arg("camera_index"),
              nb::arg("camera").none(), nb::arg("surfaces"), nb::arg("screens"), nb::arg("progress").none());

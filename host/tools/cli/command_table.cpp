@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/split.hpp"
 #include "tools/cli/picture_options.hpp"
 
 namespace luciole {

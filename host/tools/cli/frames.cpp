@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/output_file.hpp"
+#include "base/split.hpp"
 #include "luciole/error.hpp"
 #include "tools/cli/picture_options.hpp"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/split.hpp"
 #include "base/text_file.hpp"
 #include "base/write_file.hpp"
 #include "image/exposure.hpp"

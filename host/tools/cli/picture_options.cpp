@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/split.hpp"
 #include "base/text_file.hpp"
 #include "base/threads.hpp"
 #include "luciole/error.hpp"
@@ -36,17 +37,6 @@ CLI::Validator exposureCheck(bool or_auto) {
 }
 
 }  // namespace
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
 
 std::vector<int> parseInts(const std::string& text, char separator, std::size_t count,
                            const std::string& option, const std::string& expected) {

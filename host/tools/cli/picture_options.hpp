@@ -120,9 +120,6 @@ int useFrame(PictureOptions& options, const std::string& command);
 /// camera's name into the file names. Throws InputError, see cameraFiles().
 std::vector<PictureOptions> optionsOfCameras(const PictureOptions& options, const Scene& scene);
 
-/// The parts of a text between separators; the whole text if there is no separator.
-std::vector<std::string> split(const std::string& text, char separator);
-
 /// Parses "a<separator>b…" into exactly `count` whole numbers. Throws InputError naming `option`.
 std::vector<int> parseInts(const std::string& text, char separator, std::size_t count,
                            const std::string& option, const std::string& expected);

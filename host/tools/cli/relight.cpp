@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/split.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/gbuffer_input.hpp"
 #include "image/exposure.hpp"

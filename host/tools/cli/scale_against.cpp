@@ -15,6 +15,7 @@
 
 #include "base/dump_utf8.hpp"
 #include "base/sha256.hpp"
+#include "base/split.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
 #include "base/write_file.hpp"

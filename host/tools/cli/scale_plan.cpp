@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/sha256.hpp"
+#include "base/split.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
 #include "luciole/error.hpp"
