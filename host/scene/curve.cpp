@@ -1,4 +1,4 @@
-#include "luciole/curve.hpp"
+#include "luciole/animation.hpp"
 
 #include <algorithm>
 #include <cmath>

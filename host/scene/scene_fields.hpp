@@ -21,10 +21,11 @@ void withFields(T& use, Visit&& visit) {
 template <Is<Material> T, class Visit>
 void withFields(T& material, Visit&& visit) {
   auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
-         normal_scale, alpha_map, alpha, alpha_cutoff, blended, double_sided, colored_emission, model,
-         facets] = material;
+         normal_scale, alpha_map, alpha, alpha_cutoff, blended, double_sided, colored_emission, model, facets,
+         emits] = material;
   visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
-        normal_scale, alpha_map, alpha, alpha_cutoff, blended, double_sided, colored_emission, model, facets);
+        normal_scale, alpha_map, alpha, alpha_cutoff, blended, double_sided, colored_emission, model, facets,
+        emits);
 }
 template <Is<Facets> T, class Visit>
 void withFields(T& surface, Visit&& visit) {
@@ -40,15 +41,47 @@ void withFields(T& mesh, Visit&& visit) {
 }
 template <Is<Object> T, class Visit>
 void withFields(T& object, Visit&& visit) {
-  auto& [mesh, object_to_world, material, name] = object;
-  visit(mesh, object_to_world, material, name);
+  auto& [mesh, object_to_world, material, name, emits] = object;
+  visit(mesh, object_to_world, material, name, emits);
 }
 template <Is<Light> T, class Visit>
 void withFields(T& light, Visit&& visit) {
-  auto& [kind, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff, cutoff,
-         inner_cone, exponent, shadow, radius, half_angle, group, name] = light;
-  visit(kind, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff, cutoff,
-        inner_cone, exponent, shadow, radius, half_angle, group, name);
+  auto& [kind, luminaire, position, direction, ambient, diffuse, specular, attenuation, range, window,
+         falloff, cutoff, inner_cone, exponent, shadow, radius, half_angle, group, cell, name] = light;
+  visit(kind, luminaire, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff,
+        cutoff, inner_cone, exponent, shadow, radius, half_angle, group, cell, name);
+}
+template <Is<LightProfile> T, class Visit>
+void withFields(T& profile, Visit&& visit) {
+  auto& [name] = profile;
+  visit(name);
+}
+template <Is<Luminaire> T, class Visit>
+void withFields(T& luminaire, Visit&& visit) {
+  auto& [profile, up] = luminaire;
+  visit(profile, up);
+}
+template <Is<SkyLevel> T, class Visit>
+void withFields(T& level, Visit&& visit) {
+  auto& [width, height, texels] = level;
+  visit(width, height, texels);
+}
+template <Is<Sky> T, class Visit>
+void withFields(T& sky, Visit&& visit) {
+  auto& [name, levels] = sky;
+  visit(name, levels);
+}
+template <Is<SkyCell> T, class Visit>
+void withFields(T& cell, Visit&& visit) {
+  auto& [direction, light, solid_angle] = cell;
+  visit(direction, light, solid_angle);
+}
+template <Is<LightSource> T, class Visit>
+void withFields(T& source, Visit&& visit) {
+  auto& [kind, shadow, count, group, radiance, name, sky, rotate, cells, position, direction, up, width,
+         height] = source;
+  visit(kind, shadow, count, group, radiance, name, sky, rotate, cells, position, direction, up, width,
+        height);
 }
 template <Is<Fog> T, class Visit>
 void withFields(T& fog, Visit&& visit) {
@@ -98,9 +131,9 @@ void withFields(T& motion, Visit&& visit) {
 }
 template <Is<LightMotion> T, class Visit>
 void withFields(T& motion, Visit&& visit) {
-  auto& [light, position, direction, target, color, intensity, range, ambient, diffuse, specular,
+  auto& [light, position, direction, target, color, intensity, range, rotate, ambient, diffuse, specular,
          own_intensity] = motion;
-  visit(light, position, direction, target, color, intensity, range, ambient, diffuse, specular,
+  visit(light, position, direction, target, color, intensity, range, rotate, ambient, diffuse, specular,
         own_intensity);
 }
 template <Is<MorphTarget> T, class Visit>
@@ -125,10 +158,10 @@ void withFields(T& deformation, Visit&& visit) {
 }
 template <Is<Animation> T, class Visit>
 void withFields(T& animation, Visit&& visit) {
-  auto& [frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations,
-         no_mesh] = animation;
-  visit(frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations,
-        no_mesh);
+  auto& [frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, sources,
+         deformations, no_mesh] = animation;
+  visit(frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, sources,
+        deformations, no_mesh);
 }
 template <Is<Warning> T, class Visit>
 void withFields(T& warning, Visit&& visit) {
@@ -143,11 +176,11 @@ void withFields(T& shader, Visit&& visit) {
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
   auto& [name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,
-         user_models, meshes, objects, lights, light_groups, cameras, size, background, ambient, fog,
-         says_light, adds_camera, adds_lights, lighting, animation] = scene;
+         user_models, meshes, objects, lights, source_lights, sources, luminaires, light_groups, cameras,
+         size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting, animation] = scene;
   visit(name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,
-        user_models, meshes, objects, lights, light_groups, cameras, size, background, ambient, fog,
-        says_light, adds_camera, adds_lights, lighting, animation);
+        user_models, meshes, objects, lights, source_lights, sources, luminaires, light_groups, cameras, size,
+        background, ambient, fog, says_light, adds_camera, adds_lights, lighting, animation);
 }
 
 }  // namespace luciole

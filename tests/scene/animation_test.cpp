@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "luciole/curve.hpp"
+#include "luciole/animation.hpp"
 #include "luciole/error.hpp"
 #include "luciole/load_scene.hpp"
 #include "scene/posing.hpp"

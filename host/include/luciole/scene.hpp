@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "luciole/animation.hpp"
+#include "luciole/light.hpp"
 #include "luciole/model.hpp"
 #include "luciole/shader.hpp"
 #include "luciole/texture.hpp"
@@ -73,6 +73,7 @@ struct Material {
   /// The microfacets that `specular` and `shininess`, which are of Phong's model, approximate. See
   /// takeFacets().
   std::optional<Facets> facets = {};
+  std::uint32_t emits = 0;  ///< how many lights take the place of each object's triangles of it that glow
 };
 
 /// An indexed triangle mesh in its own (object) space, metres. All per-vertex arrays have positions.size()
@@ -104,48 +105,8 @@ struct Object {
   glm::dmat4 object_to_world{1.0};
   int material = -1;      ///< replaces the material of every triangle of the mesh, unless -1
   std::string name = {};  ///< may be empty; need not be unique
-};
-
-enum class LightKind : std::uint8_t { kPoint, kDirectional, kSpot };
-
-/// How a light with a finite range fades out: a factor of the distance d and the range r, exactly 0 for d ≥
-/// r.
-enum class RangeWindow : std::uint8_t {
-  kSmooth,  ///< (1 − (d/r)⁴)²: value and slope reach zero at the range
-  kKhr,     ///< 1 − (d/r)⁴, as KHR_lights_punctual recommends
-};
-
-enum class SpotFalloff : std::uint8_t {
-  kExponent,  ///< OpenGL: cos(angle to the axis)^exponent inside the cutoff, 0 outside
-  kCone,  ///< KHR_lights_punctual: from 1 inside inner_cone to 0 at the cutoff, square of a linear ramp in
-          ///< cos
-};
-
-/// A light of the scene. Disabled lights are dropped by the loader.
-struct Light {
-  LightKind kind = LightKind::kPoint;
-  glm::dvec3 position{0.0};              ///< world, metres; not for directional lights
-  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit, world: the way the light shines; not for point lights
-  /// Colours, linear, with the intensity multiplied in. ≥ 0 and finite. Defaults as the course text gives
-  /// OpenGL's.
-  glm::vec3 ambient{0.0f};
-  glm::vec3 diffuse{1.0f};
-  glm::vec3 specular{1.0f};
-  glm::vec3 attenuation{1.0f, 0.0f, 0.0f};  ///< constant, linear (1/m), quadratic (1/m²); not all 0
-  float range = std::numeric_limits<float>::infinity();  ///< metres, > 0
-  RangeWindow window = RangeWindow::kSmooth;
-  SpotFalloff falloff = SpotFalloff::kExponent;
-  double cutoff = 0.0;  ///< spot: half angle in radians, 0 to π/2 (a cutoff of 180° makes a point light)
-  double inner_cone = 0.0;  ///< kCone: radians, 0 ≤ inner_cone < cutoff
-  float exponent = 0.0f;    ///< kExponent: ≥ 0
-  bool shadow = false;
-  /// The light's size, which gives its shadow a penumbra and changes nothing else. 0: a sharp shadow.
-  double radius = 0.0;      ///< point and spot: of a sphere, metres
-  double half_angle = 0.0;  ///< directional: half its angular diameter, radians, 0 to π/4
-  std::uint32_t group = 0;  ///< in Scene::light_groups; see RenderSettings::light_groups
-  std::string name = {};    ///< may be empty; need not be unique
-
-  bool operator==(const Light&) const = default;
+  /// How many lights take the place of those of its triangles that glow; 0: of those whose material emits.
+  std::uint32_t emits = 0;
 };
 
 enum class FogMode : std::uint8_t { kNone, kLinear, kExp, kExp2 };
@@ -207,7 +168,10 @@ struct Scene {
   std::vector<Shader> user_models = {};  ///< ShaderKind::kModel; userModel(i) is that with the index i
   std::vector<Mesh> meshes = {};
   std::vector<Object> objects = {};
-  std::vector<Light> lights = {};
+  std::vector<Light> lights = {};  ///< the scene's own, then those of sources
+  std::size_t source_lights = 0;   ///< how many of them take the place of `sources` and of what glows
+  std::vector<LightSource> sources = {};
+  std::vector<Luminaire> luminaires = {};
   std::vector<std::string> light_groups{"default"};  ///< names; the first is of lights that name no group
   std::vector<Camera> cameras = {};     ///< may be empty after a loader; never after completeScene()
   std::optional<glm::ivec2> size = {};  ///< the picture's size that the file asks for
@@ -259,6 +223,17 @@ void addTangents(Scene& scene);
 /// What they get differs where texture coordinates jump along an edge but go on alike beyond it, as around a
 /// sphere: there the triangles of both sides share a tangent, so that highlights along it show no seam.
 void addAllTangents(Scene& scene);
+
+/// Lets lights take the place of the scene's sources and of objects and materials that emit, in place of
+/// those that did before: `count` lights each, at the end of Scene::lights. Loaders and poseScene() call it.
+/// - An environment is divided into cells of about the same light. Each has a directional light, and together
+///   they give a surface that sees all of them the irradiance of the sky.
+/// - Faces and glowing triangles have spots that shine as the cosine of the angle to their normal, in places
+///   that are spread by area and brightness, and share the light evenly. They stand for both sides of
+///   triangles whose material is double-sided.
+/// The same scene has the same lights. Throws InputError where there would be too many. O(texels + triangles
+/// + lights).
+void addSourceLights(Scene& scene);
 
 /// The indices of all objects of the scene.
 inline std::vector<std::uint32_t> allObjects(const Scene& scene) {

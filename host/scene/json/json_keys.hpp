@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "luciole/curve.hpp"
+#include "luciole/animation.hpp"
 #include "scene/json/json_fields.hpp"
 
 namespace luciole {

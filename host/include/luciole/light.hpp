@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "luciole/array_memory.hpp"
+
+namespace luciole {
+
+enum class LightKind : std::uint8_t { kPoint, kDirectional, kSpot };
+
+/// How a light with a finite range fades out: a factor of the distance d and the range r, exactly 0 for d ≥
+/// r.
+enum class RangeWindow : std::uint8_t {
+  kSmooth,  ///< (1 − (d/r)⁴)²: value and slope reach zero at the range
+  kKhr,     ///< 1 − (d/r)⁴, as KHR_lights_punctual recommends
+};
+
+enum class SpotFalloff : std::uint8_t {
+  kExponent,  ///< OpenGL: cos(angle to the axis)^exponent inside the cutoff, 0 outside
+  kCone,  ///< KHR_lights_punctual: from 1 inside inner_cone to 0 at the cutoff, square of a linear ramp in
+          ///< cos
+};
+
+/// A light of the scene. Disabled lights are dropped by the loader.
+struct Light {
+  LightKind kind = LightKind::kPoint;
+  std::int32_t luminaire = -1;  ///< in Scene::luminaires: multiplies a point's or a spot's light; -1: none
+  glm::dvec3 position{0.0};     ///< world, metres; not for directional lights
+  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit, world: the way the light shines; not for point lights
+  /// Colours, linear, with the intensity multiplied in. ≥ 0 and finite. Defaults as the course text gives
+  /// OpenGL's.
+  glm::vec3 ambient{0.0f};
+  glm::vec3 diffuse{1.0f};
+  glm::vec3 specular{1.0f};
+  glm::vec3 attenuation{1.0f, 0.0f, 0.0f};  ///< constant, linear (1/m), quadratic (1/m²); not all 0
+  float range = std::numeric_limits<float>::infinity();  ///< metres, > 0
+  RangeWindow window = RangeWindow::kSmooth;
+  SpotFalloff falloff = SpotFalloff::kExponent;
+  double cutoff = 0.0;  ///< spot: half angle in radians, 0 to π/2 (a cutoff of 180° makes a point light)
+  double inner_cone = 0.0;  ///< kCone: radians, 0 ≤ inner_cone < cutoff
+  float exponent = 0.0f;    ///< kExponent: ≥ 0
+  bool shadow = false;
+  /// The light's size, which gives its shadow a penumbra and changes nothing else. 0: a sharp shadow.
+  double radius = 0.0;      ///< point and spot: of a sphere, metres
+  double half_angle = 0.0;  ///< directional: half its angular diameter, radians, 0 to π/4
+  std::uint32_t group = 0;  ///< in Scene::light_groups; see RenderSettings::light_groups
+  /// The part of a larger source that it stands for: of a directional light the solid angle, sr; of others
+  /// the area, m². Highlights that are narrower than what a surface sees of it are as wide. 0: it is a point.
+  float cell = 0.0f;
+  std::string name = {};  ///< may be empty; need not be unique
+
+  bool operator==(const Light&) const = default;
+};
+
+/// How much light a luminaire gives in each direction.
+struct LightProfile {
+  std::string name = {};  ///< the file's path, for messages
+};
+
+/// A luminaire: a profile and how it is turned. Its axis is Light::direction.
+struct Luminaire {
+  std::shared_ptr<const LightProfile> profile = {};
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< world: about the way of the profile's plane C0; not along the axis
+};
+
+/// A level of a Sky: row-major, texel (0,0) top left, r g b of each; linear, ≥ 0 and finite.
+struct SkyLevel {
+  int width = 0, height = 0;
+  RawArray<float> texels = {};
+};
+
+/// What is seen in all directions, by latitude and longitude: the top row is overhead (+y), the middle
+/// column ahead (−z), and +x lies to the right of it. levels[0] is the picture itself, each next level half
+/// the size, down to a height of 1.
+struct Sky {
+  std::string name = {};  ///< the file's path, for messages
+  std::vector<SkyLevel> levels = {};
+};
+
+/// A part of a sky, which a directional light stands for.
+struct SkyCell {
+  glm::dvec3 direction{0.0};  ///< unit: towards the middle of its light, in the sky's axes
+  glm::vec3 light{0.0f};      ///< its irradiance, over π, of a surface that faces `direction`
+  float solid_angle = 0.0f;   ///< sr
+};
+
+enum class SourceKind : std::uint8_t {
+  kEnvironment,  ///< a Sky all around, which is the background, too
+  kRectangle,    ///< a flat face that shines from its front alone, and isn't seen
+  kDisc,         ///< the same, an ellipse
+};
+
+/// What shines and is no point: many lights take its place, see addSourceLights().
+struct LightSource {
+  SourceKind kind = SourceKind::kEnvironment;
+  bool shadow = false;
+  std::uint32_t count = 0;   ///< of lights that take its place; 0: it lights nothing
+  std::uint32_t group = 0;   ///< as Light::group
+  glm::vec3 radiance{1.0f};  ///< linear, ≥ 0; of an environment it multiplies the sky
+  std::string name = {};     ///< may be empty; its lights have it
+  // Of environments.
+  std::shared_ptr<const Sky> sky = {};
+  double rotate = 0.0;              ///< radians about +y, counter-clockwise as seen from above
+  std::vector<SkyCell> cells = {};  ///< of the sky, `count` at most; made by addSourceLights()
+  // Of faces. World, metres.
+  glm::dvec3 position{0.0};              ///< of the middle
+  glm::dvec3 direction{0.0, -1.0, 0.0};  ///< unit: the way it shines
+  glm::dvec3 up{0.0, 0.0, -1.0};         ///< about the way its height goes; not parallel to `direction`
+  double width = 1.0, height = 1.0;      ///< > 0
+};
+
+}  // namespace luciole
