@@ -48,6 +48,7 @@ LightSet layerLights(OpenedDevice& device, const LightSet& lights, const std::ve
   if (!layer.ambient) darken(set.frame.ambient);
   if (!layer.fog) darken(set.frame.fog_color);
   if (!layer.background) darken(set.frame.background);
+  if (layer.background) set.sky = lights.sky;
   set.emission = layer.emission;
   for (const std::uint32_t i : summed) {
     ShadeLight light = lights.lights[i];

@@ -25,7 +25,7 @@ struct LightLayer {
   bool ambient = false;                                        ///< the scene's ambient light
   bool emission = false;
   bool fog = false;         ///< the fog's own colour; all light is seen through the fog
-  bool background = false;  ///< Scene::background
+  bool background = false;  ///< Scene::background, or the environment
 };
 
 /// The most layers of groups.

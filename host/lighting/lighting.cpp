@@ -13,7 +13,7 @@ float4 color4(const glm::vec3& color) { return {color.x, color.y, color.z, 0}; }
 ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettings& settings) {
   ShadeFrame frame{};
   frame.ambient = color4(scene.lighting ? scene.ambient : glm::vec3(1.0f));
-  frame.background = color4(scene.background);
+  if (!environmentOf(scene)) frame.background = color4(scene.background);
   frame.fog_color = color4(scene.fog.color);
   frame.fog_density = color4(scene.fog.density);
   frame.eye = camera.orthographic ? float4{0, 0, 1, 0} : float4{0, 0, 0, 1};
@@ -64,6 +64,7 @@ void prepareLighting(OpenedDevice& device, const Scene& scene, const Camera& cam
   lighting.user_text = settings.user_text;
   lighting.unlit = !scene.lighting;
   lighting.lights.frame = makeFrame(scene, camera, settings);
+  lighting.lights.sky = environmentOf(scene);
   lighting.group_log2 = groupLog2(settings.tile_size);
   lighting.samples = {.light_error = settings.light_error,
                       .least_value = settings.light_error_floor,

@@ -194,6 +194,7 @@ double fogLimit(const Fog& fog, double brightest) {
 }
 
 std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, float exposure, Model model) {
+  if (environmentOf(scene)) return allObjects(scene);  // no sky has the fog's colour everywhere
   FogContext fogged{scene, glm::dvec3(glm::inverse(view.world_to_view)[3])};
   for (const Material& material : scene.materials)
     fogged.emission = std::max(fogged.emission, largest(glm::dvec3(material.emission)));

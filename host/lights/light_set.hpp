@@ -9,6 +9,7 @@
 #include "lights/light_clusters.hpp"
 #include "lights/light_tree.hpp"
 #include "lights/shade_lights.hpp"
+#include "luciole/light.hpp"
 
 namespace luciole {
 
@@ -29,6 +30,7 @@ struct SampledSet : ClusterSet {
 struct LightSet {
   /// Ambient light, fog and background; all but plane_stride and texel_count, which depend on the G-buffer.
   ShadeFrame frame{};
+  const LightSource* sky = nullptr;    ///< the scene's environment, if that is the background
   bool emission = true;                ///< surfaces' own light counts
   RawArray<ShadeLight> lights;         ///< those that are summed by themselves, in the order of a Z curve
   std::vector<std::uint32_t> order;    ///< the scene's index of each

@@ -59,6 +59,22 @@ bool isDark(const Scene& scene) {
          std::none_of(scene.materials.begin(), scene.materials.end(), glows);
 }
 
+/// Gives the scene this environment, in place of its own.
+void setEnvironment(const std::string& path, Scene& scene) {
+  LightSource sky;
+  sky.shadow = true;
+  sky.count = kSkyLights;
+  sky.sky = readSky(path, scene.warnings);
+  scene.says_light = true;
+  const auto own = std::find_if(scene.sources.begin(), scene.sources.end(), [](const LightSource& source) {
+    return source.kind == SourceKind::kEnvironment;
+  });
+  if (own == scene.sources.end())
+    scene.sources.push_back(std::move(sky));
+  else
+    own->sky = std::move(sky.sky);
+}
+
 /// Expands the light fields. A missing camera is chosen before: frameScene tries the positions of lights, and
 /// random ones say nothing of where to stand.
 void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
@@ -111,6 +127,7 @@ Scene loadScene(const std::string& path, double frame, const LoadSettings& setti
     throw InputError(fmt::format("{}: unknown kind of scene \"{}\"; expected .json, .obj, .gltf or .glb",
                                  path, extensionOf(path)));
   }
+  if (!settings.environment.empty()) setEnvironment(settings.environment, scene);
   refuseFaults(scene, settings);
   for (const std::string& texture : scene.missing_textures)
     scene.warnings.push_back({texture + "; drawn without", "missing texture"});
@@ -119,6 +136,7 @@ Scene loadScene(const std::string& path, double frame, const LoadSettings& setti
   if (settings.tangents || usesTangents(scene.user_models)) addAllTangents(scene);
   addLightFields(light_fields, scene);
   poseScene(scene, 1);
+  addSourceLights(scene);
   completeScene(scene, is_mesh_file);
   if (is_mesh_file) changeLoaded(changes, scene);
   if (frame != 1) poseScene(scene, frame);

@@ -206,10 +206,63 @@ glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const Sur
   });
 }
 
+/// A level of a sky at a place in turns around and half turns down, as weights of all texels nearby: each
+/// texel reaches to its neighbours' middles.
+static glm::dvec3 skyLevelAt(const SkyLevel& level, double around, double down) {
+  const double column = around * level.width, row = down * level.height;
+  glm::dvec3 sum(0.0);
+  for (int y = int(std::floor(row)) - 1; y <= int(std::floor(row)) + 1; ++y)
+    for (int x = int(std::floor(column)) - 1; x <= int(std::floor(column)) + 1; ++x) {
+      const double weight =
+          std::max(0.0, 1 - std::abs(x + 0.5 - column)) * std::max(0.0, 1 - std::abs(y + 0.5 - row));
+      const int inside_x = ((x % level.width) + level.width) % level.width;
+      const int inside_y = std::clamp(y, 0, level.height - 1);
+      const std::size_t texel =
+          3 * (std::size_t(inside_y) * std::size_t(level.width) + std::size_t(inside_x));
+      for (int c = 0; c < 3; ++c) sum[c] += weight * level.texels[texel + std::size_t(c)];
+    }
+  return sum;
+}
+
+/// What a pixel shows of an environment.
+static glm::dvec3 skySeenBy(const LightSource& sky, const GBuffer& gbuffer, const glm::ivec2& pixel) {
+  const Camera& camera = gbuffer.camera;
+  const glm::dvec2 size(gbuffer.picture_size);
+  const double up = std::tan(camera.fov_y / 2);
+  const double across = up * camera.pixel_aspect * double(gbuffer.display.pixel_aspect) * size.x / size.y;
+  const auto ray = [&](double x, double y) {
+    if (camera.orthographic) return -glm::dvec3(camera.camera_to_world[2]);
+    const glm::dvec2 screen(2 * (pixel.x + gbuffer.crop_origin.x + x) / size.x - 1,
+                            1 - 2 * (pixel.y + gbuffer.crop_origin.y + y) / size.y);
+    const glm::dvec3 way((screen.x - camera.shift.x) * across, (screen.y - camera.shift.y) * up, -1);
+    return glm::dmat3(camera.camera_to_world) * glm::normalize(way);
+  };
+  const glm::dvec3 middle = ray(0.5, 0.5);
+  const double width = std::max(glm::length(ray(1.5, 0.5) - middle), glm::length(ray(0.5, 1.5) - middle));
+  // Turning the sky counter-clockwise moves what is seen the other way.
+  const double longitude = std::atan2(middle.x, -middle.z) + sky.rotate;
+  const double latitude = std::atan2(middle.y, std::hypot(middle.x, middle.z));
+  const double pi = std::acos(-1.0);
+  const std::vector<SkyLevel>& levels = sky.sky->levels;
+  const double texels = std::max(width * levels[0].width / (2 * pi * std::max(std::cos(latitude), 1e-9)),
+                                 width * levels[0].height / pi);
+  const double level = std::min(std::max(0.0, std::log2(texels)), double(levels.size()) - 1);
+  const std::size_t finer = std::min(std::size_t(level), levels.size() - 1);
+  const double turns = 0.5 + longitude / (2 * pi), around = turns - std::floor(turns);
+  const double down = 0.5 - latitude / pi;
+  glm::dvec3 color = skyLevelAt(levels[finer], around, down) * (1 - (level - double(finer)));
+  if (finer + 1 < levels.size())
+    color += skyLevelAt(levels[finer + 1], around, down) * (level - double(finer));
+  return color * glm::dvec3(sky.radiance);
+}
+
 static glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
                              const ReferenceSettings& settings, UserReflections& user, bool is_asking) {
   const std::optional<ShownPoint> shown = shownPoint(gbuffer, pixel, settings);
-  if (!shown) return scene.background;
+  if (!shown) {
+    const LightSource* sky = environmentOf(scene);
+    return sky ? skySeenBy(*sky, gbuffer, pixel) : glm::dvec3(scene.background);
+  }
   const glm::dvec3 radiance = radianceOf(scene, gbuffer.camera, shown->point, shown->model,
                                          is_asking ? Visibility() : shown->visibility, user);
   return settings.fog ? referenceFog(scene.fog, gbuffer.camera, shown->point.position, radiance) : radiance;

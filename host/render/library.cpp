@@ -44,6 +44,7 @@ Picture bakeLight(Device& device, Scene scene, std::uint32_t object, const BakeS
   const std::lock_guard lock(on.use);
   scene.fog = {};
   scene.background = glm::vec3(0.0f);
+  scene.sources.clear();  // their lights stay
   Picture picture;
   picture.image = bakeMap(on, scene, object, bake, settings, picture.stats);
   return picture;

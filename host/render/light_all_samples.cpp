@@ -9,6 +9,7 @@
 #include "render/change_surfaces.hpp"
 #include "render/light_points.hpp"
 #include "render/screens.hpp"
+#include "render/sky_background.hpp"
 
 namespace luciole {
 namespace {
@@ -37,6 +38,7 @@ struct SampleLister final : PointLister {
   PixelSums sums;
   std::vector<PixelSums> layer_sums;  ///< colours and bounds alone
   ScreenedColors screened;            ///< with screens only
+  Plane sky;                          ///< skyPlane(), with an environment only
   Image image;
   std::optional<TraceSpan> span;
 
@@ -73,8 +75,18 @@ struct SampleLister final : PointLister {
     return true;
   }
 
+  /// Lets the environment be seen where no surface is, if it is these lights' background.
+  void addBackground(const LightSet& lights, LitPlanes& lit) {
+    if (!lights.sky) return;
+    timed(picture.stats, Stage::kResolve, [&] {
+      if (sky.empty()) sky = skyPlane(*lights.sky, view, drawn);
+      addSky(sky, drawn, lit.color);
+    });
+  }
+
   void take(LitPlanes lit) override {
     countPass(drawn, lit, counts.evaluated, picture.plan.shade.light_error_floor, picture.stats);
+    addBackground(picture.lighting.lights, lit);
     if (!picture.plan.screens.empty()) takeScreened(lit.color);
     timed(picture.stats, Stage::kResolve, [&] {
       if (sample == 0)
@@ -101,6 +113,7 @@ struct SampleLister final : PointLister {
   }
 
   void takeLayer(std::size_t layer, LitPlanes lit) override {
+    addBackground(picture.layers[layer].lights, lit);
     timed(picture.stats, Stage::kResolve, [&] {
       PixelSums& sum = layer_sums[layer];
       const std::size_t bounds = lit.light_error.size();

@@ -4,6 +4,7 @@
 #include "render/assemble.hpp"
 #include "render/light_points.hpp"
 #include "render/screens.hpp"
+#include "render/sky_background.hpp"
 
 namespace luciole {
 namespace {
@@ -23,8 +24,16 @@ struct GivenLister final : PointLister {
     return true;
   }
 
+  /// Lets the environment be seen where no surface is, if it is these lights' background.
+  void addBackground(const LightSet& lights, LitPlanes& lit) const {
+    if (lights.sky)
+      timed(picture.stats, Stage::kResolve,
+            [&] { addSky(skyPlane(*lights.sky, picture.plan.view, given), given, lit.color); });
+  }
+
   void take(LitPlanes lit) override {
     countPass(given, lit, counts.evaluated, picture.plan.shade.light_error_floor, picture.stats);
+    addBackground(picture.lighting.lights, lit);
     ScreenedColors screened;
     if (!picture.plan.screens.empty())
       screened = timed(picture.stats, Stage::kScreens, [&] {
@@ -40,6 +49,7 @@ struct GivenLister final : PointLister {
   }
 
   void takeLayer(std::size_t layer, LitPlanes lit) override {
+    addBackground(picture.layers[layer].lights, lit);
     timed(picture.stats, Stage::kResolve, [&] {
       const PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error), {}};
       setLightLayer(given, sums, picture.settings, channelOfLayer(picture, image, layer), image);

@@ -13,6 +13,7 @@
 #include "render/light_points.hpp"
 #include "render/memory.hpp"
 #include "render/pixel_sums.hpp"
+#include "render/sky_background.hpp"
 
 namespace luciole {
 namespace {
@@ -71,7 +72,7 @@ struct SharedLister final : PointLister {
     most_points = pointsAPass(shared.gbuffer.pixels());
     layer_sums.resize(picture.layers.size());
     const auto has_background = [](const auto& layer) {
-      return backgroundOf(layer.lights) != glm::vec3(0.0f);
+      return backgroundOf(layer.lights) != glm::vec3(0.0f) || layer.lights.sky;
     };
     counted = {countsCovered(picture.settings) || has_background(picture.lighting) ||
                    std::any_of(picture.layers.begin(), picture.layers.end(), has_background),
@@ -170,9 +171,15 @@ struct SharedLister final : PointLister {
     addCount(picture.stats, "refined_pixels", refined_pixels);
     addCount(picture.stats, "refined_points", refined_points);
     return timed(picture.stats, Stage::kResolve, [&] {
+      Plane sky;
       const auto addUncovered = [&](const LightSet& lights, Plane& color) {
-        if (!sums.covered.empty())
+        if (sums.covered.empty()) return;
+        if (!lights.sky) {
           addBackground(backgroundOf(lights), picture.settings.samples, sums.covered, color);
+          return;
+        }
+        if (sky.empty()) sky = skyPlane(*lights.sky, sampled.view, shared.gbuffer);
+        addBackground(sky, picture.settings.samples, sums.covered, color);
       };
       addUncovered(picture.lighting.lights, sums.color);
       setColors(shared.gbuffer, sums, picture.settings, image);

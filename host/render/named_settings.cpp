@@ -189,6 +189,15 @@ std::vector<NamedSetting> viewSettings() {
          [](const std::string& value, RenderSettings& settings) { settings.alpha = value == "on"; })};
 }
 
+/// The number of "light_count"; 0: it is "auto", or not said. Throws InputError.
+std::uint32_t lightCountIn(const std::string& value) {
+  if (value.empty() || value == "auto") return 0;
+  const std::optional<std::int64_t> count = numberIn<std::int64_t>(value);
+  if (count && *count >= 1 && *count <= kMostSourceLights) return std::uint32_t(*count);
+  throw InputError(
+      fmt::format("expected auto or a whole number from 1 to {}, got {}", kMostSourceLights, value));
+}
+
 std::vector<NamedSetting> shadowSettings() {
   return {
       of(choice(
@@ -209,6 +218,11 @@ std::vector<NamedSetting> shadowSettings() {
       choice("cast_shadows", {"all", "marked", "none"}, "",
              "which lights cast shadows: all, none, or those that the scene marks (default: marked, but all "
              "where none is marked and shadows are asked for)"),
+      of(text("light_count", "",
+              "lights that take the place of each environment, face and glowing mesh, 1 to 1048576, or auto: "
+              "as few as miss no more than the light error in the share `confidence` of the pixels (default: "
+              "as the scene says)"),
+         [](const std::string& value, RenderSettings&) { lightCountIn(value); }),
       of(number("soft_samples", ShadeSettings{}.soft_samples, 1, kMostSoftSamples,
                 "places on a light of a size that soft-exact looks at from each point"),
          [](const std::string& value, RenderSettings& settings) {
@@ -397,6 +411,10 @@ void applySettings(const SettingValues& values, RenderSettings& settings) {
 
 void applySettings(const SettingValues& values, WriteOptions& options) {
   applyRows(values, &NamedSetting::set_file, options);
+}
+
+void setLightCounts(const std::string& how_many, Scene& scene) {
+  if (const std::uint32_t count = lightCountIn(how_many); count > 0) setLightCounts(scene, count);
 }
 
 void castShadows(const std::string& who, bool asked_for, Scene& scene) {

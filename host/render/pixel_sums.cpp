@@ -69,4 +69,12 @@ void addBackground(const glm::vec3& background, int samples, const Plane& covere
   });
 }
 
+void addBackground(const Plane& background, int samples, const Plane& covered, Plane& color) {
+  const std::size_t n = covered.size();
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+    const float bare = float(samples) - covered[i];
+    for (std::size_t c = 0; c < 3; ++c) color[i + c * n] += bare * background[i + c * n];
+  });
+}
+
 }  // namespace luciole

@@ -39,4 +39,7 @@ void addPoints(const GBuffer& layout, const PointLists& points, std::size_t firs
 /// covered: as in PixelSums.
 void addBackground(const glm::vec3& background, int samples, const Plane& covered, Plane& color);
 
+/// The same of a background that differs from pixel to pixel: planes r g b.
+void addBackground(const Plane& background, int samples, const Plane& covered, Plane& color);
+
 }  // namespace luciole

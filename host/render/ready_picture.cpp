@@ -16,7 +16,10 @@ void prepareLights(ReadyPicture& picture, const Camera& camera, KeptShadows* kep
   const PicturePlan& plan = picture.plan;
   prepareLighting(picture.device, picture.scene, camera, withMargin(plan.view, plan), plan.features,
                   plan.shade, picture.lighting, picture.stats, kept);
-  if (picture.settings.alpha) picture.lighting.lights.frame.background = {};
+  if (picture.settings.alpha) {
+    picture.lighting.lights.frame.background = {};
+    picture.lighting.lights.sky = nullptr;
+  }
   picture.layers = timed(picture.stats, Stage::kPrepareLights, [&] {
     return prepareLayers(picture.device, picture.scene, camera, picture.lighting, plan.pixels, plan.shade,
                          plan.layers);

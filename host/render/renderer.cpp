@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/light_counts.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/share_picture.hpp"
 
@@ -57,6 +58,12 @@ double Renderer::measureExposure(const RenderSettings& settings, Stats& stats) {
   const auto locks = state_->lock();
   Sharer& first = state_->sharers.front();
   return luciole::measureExposure(*first.device, state_->scene, settings, stats, &first.kept);
+}
+
+double Renderer::chooseLightCounts(const RenderSettings& settings, Stats& stats) {
+  const auto locks = state_->lock();
+  Sharer& first = state_->sharers.front();
+  return luciole::chooseLightCounts(*first.device, state_->scene, settings, stats, &first.kept);
 }
 
 }  // namespace luciole

@@ -85,6 +85,16 @@ void poseMesh(Scene& scene, const std::vector<glm::dmat4>& worlds, double frame,
   deformation.pose = std::move(pose);
 }
 
+/// Sets a direction to a curve's, if that has keys. Returns what is wrong, or "".
+std::string turn(const Curve& curve, double frame, glm::dvec3& direction) {
+  if (curve.keys.empty()) return "";
+  const glm::dvec3 way = valueAt(curve, frame);
+  const double length = glm::length(way);
+  if (!(length >= kLeastSine)) return "it turns from one direction to the opposite one, which is no way";
+  direction = way / length;
+  return "";
+}
+
 /// Sets a light's colours to 0 while a scale of 0 hides it, and restores them afterwards.
 void setLightShown(bool shown, Light& light, Attachment& attachment) {
   std::optional<glm::mat3>& kept = attachment.hidden_colors;
@@ -140,6 +150,13 @@ void poseScene(Scene& scene, double frame) {
     const std::string fault = poseLight(motion, frame, scene.lights[motion.light]);
     if (!fault.empty()) fail(scene, frame, fmt::format("light {}", motion.light), fault);
   }
+  for (const LightMotion& motion : animation.sources) {
+    const std::string fault = poseSource(motion, frame, scene.sources[motion.light]);
+    if (!fault.empty()) fail(scene, frame, fmt::format("source {}", motion.light), fault);
+  }
+  const bool sources_move =
+      !animation.sources.empty() || !animation.objects.empty() || !animation.deformations.empty();
+  if (scene.source_lights > 0 && sources_move) addSourceLights(scene);
   checkPlaces(scene);
 }
 
@@ -176,13 +193,24 @@ std::string poseLight(const LightMotion& motion, double frame, Light& light) {
     light.specular *= intensity;
   }
   if (!motion.target.keys.empty()) return aimSpot(glm::dvec3(valueAt(motion.target, frame)), light);
-  if (!motion.direction.keys.empty()) {
-    const glm::dvec3 direction = valueAt(motion.direction, frame);
-    const double length = glm::length(direction);
-    if (!(length >= kLeastSine)) return "it turns from one direction to the opposite one, which is no way";
-    light.direction = direction / length;
+  return turn(motion.direction, frame, light.direction);
+}
+
+std::string poseSource(const LightMotion& motion, double frame, LightSource& source) {
+  if (!motion.rotate.keys.empty()) source.rotate = glm::radians(valueAt(motion.rotate, frame).x);
+  if (!motion.position.keys.empty()) source.position = valueAt(motion.position, frame);
+  if (!motion.color.keys.empty() || !motion.intensity.keys.empty()) {
+    source.radiance =
+        motion.color.keys.empty() ? motion.diffuse : glm::vec3(glm::dvec3(valueAt(motion.color, frame)));
+    source.radiance *= motion.intensity.keys.empty() ? motion.own_intensity
+                                                     : static_cast<float>(valueAt(motion.intensity, frame).x);
   }
-  return "";
+  if (source.kind == SourceKind::kEnvironment) return "";
+  const std::string fault = turn(motion.direction, frame, source.direction);
+  if (!fault.empty()) return fault;
+  return glm::length(glm::cross(source.up, source.direction)) < kLeastSine
+             ? "its up is parallel to its direction"
+             : "";
 }
 
 std::string aimCamera(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up, Camera& camera) {

@@ -9,9 +9,10 @@
 // wrong, or "".
 namespace luciole {
 
-/// Poses one camera or light at a frame.
+/// Poses one camera, light or source at a frame.
 std::string poseCamera(const CameraMotion& motion, double frame, Camera& camera);
 std::string poseLight(const LightMotion& motion, double frame, Light& light);
+std::string poseSource(const LightMotion& motion, double frame, LightSource& source);
 
 /// Places a camera at `eye`, looking at `target`. `up` is unit. Wrong: `eye` is `target`, or `up` is parallel
 /// to the view.

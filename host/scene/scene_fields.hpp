@@ -78,10 +78,10 @@ void withFields(T& cell, Visit&& visit) {
 }
 template <Is<LightSource> T, class Visit>
 void withFields(T& source, Visit&& visit) {
-  auto& [kind, shadow, count, group, radiance, name, sky, rotate, cells, position, direction, up, width,
-         height] = source;
-  visit(kind, shadow, count, group, radiance, name, sky, rotate, cells, position, direction, up, width,
-        height);
+  auto& [kind, shadow, count, group, radiance, name, sky, rotate, divided, cells, position, direction, up,
+         width, height] = source;
+  visit(kind, shadow, count, group, radiance, name, sky, rotate, divided, cells, position, direction, up,
+        width, height);
 }
 template <Is<Fog> T, class Visit>
 void withFields(T& fog, Visit&& visit) {

@@ -294,6 +294,7 @@ std::string lightFault(const Light& light, std::size_t groups) {
     return wrong("radius", light.radius, "0 to 1e18");
   if (!(light.half_angle >= 0 && light.half_angle <= glm::radians(45.0) + kUnitError))
     return wrong("half_angle", light.half_angle, "radians from 0 to half a right angle");
+  if (!(light.cell >= 0 && std::isfinite(light.cell))) return wrong("cell", light.cell, "at least 0");
   return light.group < groups ? "" : wrongIndex("group", light.group, "light_groups", groups);
 }
 
@@ -374,6 +375,17 @@ std::string lightMotionFault(const Scene& scene, const LightMotion& motion) {
   return firstOf({motionFault("position", motion.position), motionFault("direction", motion.direction),
                   motionFault("target", motion.target), motionFault("color", motion.color),
                   motionFault("intensity", motion.intensity), motionFault("range", motion.range)});
+}
+
+std::string sourceMotionFault(const Scene& scene, const LightMotion& motion) {
+  if (motion.light >= scene.sources.size())
+    return wrongIndex("light", motion.light, "sources", scene.sources.size());
+  if (!areFinite(motion.diffuse)) return wrong("diffuse", motion.diffuse, "finite numbers");
+  if (!std::isfinite(motion.own_intensity))
+    return wrong("own_intensity", motion.own_intensity, "a finite number");
+  return firstOf({motionFault("position", motion.position), motionFault("direction", motion.direction),
+                  motionFault("color", motion.color), motionFault("intensity", motion.intensity),
+                  motionFault("rotate", motion.rotate)});
 }
 
 std::string targetFault(const RestShape& rest, const MorphTarget& target) {
@@ -481,6 +493,8 @@ void checkAnimation(const Scene& scene) {
            [&](std::size_t i) { return cameraMotionFault(scene, animation.cameras[i]); });
   checkAll(scene, "animation.lights", animation.lights,
            [&](std::size_t i) { return lightMotionFault(scene, animation.lights[i]); });
+  checkAll(scene, "animation.sources", animation.sources,
+           [&](std::size_t i) { return sourceMotionFault(scene, animation.sources[i]); });
   checkAll(scene, "animation.deformations", animation.deformations,
            [&](std::size_t i) { return deformationFault(scene, animation.deformations[i]); });
 }
@@ -537,6 +551,8 @@ void validateScene(const Scene& scene) {
            [&](std::size_t i) { return objectFault(scene, scene.objects[i]); });
   checkAll(scene, "lights", scene.lights,
            [&](std::size_t i) { return lightFault(scene.lights[i], scene.light_groups.size()); });
+  if (scene.source_lights > scene.lights.size())
+    fail(scene, "", wrongIndex("source_lights", scene.source_lights, "lights", scene.lights.size()));
   checkAll(scene, "cameras", scene.cameras, [&](std::size_t i) { return cameraFault(scene.cameras[i]); });
   checkAnimation(scene);
   if (std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {

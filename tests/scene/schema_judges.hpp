@@ -59,6 +59,15 @@ inline constexpr LoadersRule kLoadersRules[]{
      R"({"objects": [{"primitive": "box", "material": "gold"}]})"},
     {"has no variant", "reads another file", R"({"objects": [{"mesh": "t.gltf", "variant": "worn"}]})"},
     {"has no animation", "reads another file", R"({"objects": [{"mesh": "t.gltf", "animation": "walk"}]})"},
+    {"is parallel to the direction", "compares two directions",
+     R"({"lights": [{"type": "disc", "position": [0,0,0], "direction": [0,-1,0], "up": [0,2,0]}]})"},
+    {"up is parallel to its direction", "compares two directions",
+     R"({"lights": [{"type": "disc", "position": [0,0,0], "direction": [0,-1,0], "up": [1,0,0],
+                     "keys": [{"frame": 1, "direction": [1,0,0]}]}]})"},
+    {"a second environment", "counts elements",
+     R"({"lights": [{"type": "environment", "image": "sky.ppm"}, {"type": "environment", "image": "sky.ppm"}]})"},
+    {"nothing of the object has an emission", "looks a material up",
+     R"({"objects": [{"primitive": "plane", "emits": true}]})"},
     {"there is no file", "looks at the disk", R"({"objects": [{"mesh": "gone.obj"}]})"},
     {"is a folder; expected a file", "looks at the disk", R"({"light_fields": [{"csv": "."}]})"},
     {"lights, expected", "reads another file", R"({"light_fields": [{"csv": "lamps.csv", "count": 4}]})"},
@@ -127,6 +136,7 @@ class Judges {
         "animations": [{"name": "spin", "samplers": [{"input": 1, "output": 2}],
                         "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
         "extensions": {"KHR_materials_variants": {"variants": [{"name": "new"}]}}})";
+    std::ofstream(folder_ / "sky.ppm") << "P3 2 1 255 255 255 255 128 128 128\n";
     std::ofstream(folder_ / "lamps.csv") << "1,2,3,1,1,1,4\n5,6,7,1,1,1,\n8,9,10,1,1,1,\n";
     const json text = asSchemasSeeIt(schemaText());
     valijson::SchemaParser(valijson::SchemaParser::kDraft7)

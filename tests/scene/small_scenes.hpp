@@ -72,6 +72,20 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
       {"type": "spot", "position": [0, 4, 0], "target": [0, 0, 0], "cutoff": 180},
       {"type": "spot", "position": [0, 4, 0], "target": [0, 0, 0], "inner_cone": 10},
       {"type": "spot", "position": [0, 4, 0], "direction": [0, 0, 1], "outer_cone": 90}]})"},
+    {"Skies", R"({"lights": [
+      {"type": "environment", "image": "sky.ppm", "rotate": 30, "intensity": 2, "color": [1, 0.9, 0.8], "count": 16,
+       "shadow": true, "group": "sky", "name": "sky",
+       "keys": [{"frame": 1, "rotate": 0}, {"frame": 9, "rotate": 360, "intensity": 3, "color": 0.5}]}]})"},
+    {"Faces", R"({"lights": [
+      {"type": "rectangle", "position": [0, 3, 0], "direction": [0, -1, 0], "up": [1, 0, 0], "width": 2, "height": 0.5,
+       "color": 4, "intensity": 2, "count": 8, "shadow": true, "group": "lamp", "name": "panel",
+       "keys": [{"frame": 1, "position": [0, 2, 0]}, {"frame": 2, "direction": [0.1, -1, 0]}]},
+      {"type": "disc", "position": [0, 3, 0], "direction": [0, -1, 0], "interpolation": "smooth",
+       "keys": [{"frame": 1, "intensity": 0}, {"frame": 5, "color": 2}]},
+      {"type": "disc", "position": [0, 3, 0], "direction": [1, 0, 0], "enabled": false}]})"},
+    {"Glow", R"({"materials": {"lamp": {"emission": 3, "emits": 4}, "screen": {"emission": [1, 2, 3], "emits": false}},
+      "objects": [{"primitive": "plane", "segments": 1, "material": "lamp"},
+                  {"primitive": "box", "material": "screen", "emits": true}]})"},
     {"LightFields", R"({"objects": [{"primitive": "plane", "segments": 1}], "light_fields": [
       {"count": 3, "seed": 7, "min": [0, 0, 0], "max": [1, 2, 3], "color": [1, 0.5, 0.2], "intensity": [1, 2], "range": [0.5, 1]},
       {"count": 3, "shape": "box", "min": [0, 0, 0], "max": [1, 1, 1], "colors": [1, [1, 0, 0]], "intensity": 2, "range": 2},
@@ -144,6 +158,9 @@ inline json smallVersion(const std::filesystem::path& path) {
   if (scene.contains("light_fields"))
     for (json& field : scene["light_fields"])
       if (field.contains("csv")) field["csv"] = "lamps.csv";
+  if (scene.contains("lights"))
+    for (json& light : scene["lights"])
+      if (light.contains("image")) light["image"] = "sky.ppm";
   if (scene.contains("materials")) {
     json materials = json::object();
     for (const auto& [name, material] : scene["materials"].items()) {

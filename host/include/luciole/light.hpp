@@ -4,10 +4,12 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "luciole/array_memory.hpp"
+#include "luciole/warning.hpp"
 
 namespace luciole {
 
@@ -106,6 +108,7 @@ struct LightSource {
   // Of environments.
   std::shared_ptr<const Sky> sky = {};
   double rotate = 0.0;              ///< radians about +y, counter-clockwise as seen from above
+  std::uint32_t divided = 0;        ///< the count that `cells` are of
   std::vector<SkyCell> cells = {};  ///< of the sky, `count` at most; made by addSourceLights()
   // Of faces. World, metres.
   glm::dvec3 position{0.0};              ///< of the middle
@@ -113,5 +116,18 @@ struct LightSource {
   glm::dvec3 up{0.0, 0.0, -1.0};         ///< about the way its height goes; not parallel to `direction`
   double width = 1.0, height = 1.0;      ///< > 0
 };
+
+/// Lights that take the place of one source: the most, and those of a sky of which nothing else is said.
+inline constexpr std::uint32_t kMostSourceLights = 1u << 20, kSkyLights = 4096;
+
+/// A sky of a picture in memory: 3 × width × height numbers, r g b, row-major, the top left first, with width
+/// = 2 × height. What isn't finite or is negative counts as 0, and what is above 10¹⁵ as that, with a
+/// warning. Throws InputError for another shape. O(texels).
+std::shared_ptr<const Sky> makeSky(int width, int height, std::span<const float> texels,
+                                   const std::string& name, std::vector<Warning>& warnings);
+
+/// The same of a file of any format that readImage() reads: by latitude and longitude, or a cross of a cube's
+/// faces, 4:3 or 3:4, with the face ahead where the arms meet. Throws as readImage() does.
+std::shared_ptr<const Sky> readSky(const std::string& path, std::vector<Warning>& warnings);
 
 }  // namespace luciole

@@ -23,6 +23,9 @@ struct LoadSettings {
   /// Values to replace in the scene, each "PATH=VALUE": a PATH is keys by dots and elements as [0], such as
   /// lights[0].intensity; VALUE is JSON, or else a text.
   std::vector<std::string> changes{};
+  /// A picture of a sky (readSky()), which is the scene's environment, with shadows, in place of its own;
+  /// empty: none.
+  std::string environment{};
 };
 
 /// Reads a scene by its file's extension (.json, .obj, .gltf, .glb; case ignored), or Luciole JSON from

@@ -64,6 +64,13 @@ class Renderer {
   /// Adds to the statistics what that cost. Throws as render() does.
   double measureExposure(const RenderSettings& settings, Stats& stats);
 
+  /// Chooses how many lights take the place of each source, and of what glows: the fewest of 64, 128 … 65536
+  /// whose own error is within settings.shade.light_error for the share `confidence` of the pixels. Returns
+  /// that error, which is estimated from two pictures of about half as many lights, in other places each:
+  /// half of what they differ by. A warning says where 65536 don't do. Throws as render() does, and
+  /// InputError for a light_error of 0.
+  double chooseLightCounts(const RenderSettings& settings, Stats& stats);
+
  private:
   struct State;
   friend Renderer makeRenderer(std::span<OpenedDevice* const> devices, Scene scene);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -225,15 +226,31 @@ void addTangents(Scene& scene);
 void addAllTangents(Scene& scene);
 
 /// Lets lights take the place of the scene's sources and of objects and materials that emit, in place of
-/// those that did before: `count` lights each, at the end of Scene::lights. Loaders and poseScene() call it.
+/// those that did before: `count` lights each, at the end of Scene::lights. Loaders call it, and poseScene()
+/// where it has been called.
 /// - An environment is divided into cells of about the same light. Each has a directional light, and together
 ///   they give a surface that sees all of them the irradiance of the sky.
 /// - Faces and glowing triangles have spots that shine as the cosine of the angle to their normal, in places
 ///   that are spread by area and brightness, and share the light evenly. They stand for both sides of
 ///   triangles whose material is double-sided.
-/// The same scene has the same lights. Throws InputError where there would be too many. O(texels + triangles
+/// The same scene has the same lights; where there are as many as before, each keeps Light::shadow. Throws
+/// InputError for a source out of its range.. O(texels + triangles
 /// + lights).
 void addSourceLights(Scene& scene);
+
+/// Sets the number of lights for each source and each object or material that emits, and places them.
+void setLightCounts(Scene& scene, std::uint32_t count);
+
+/// The lights of a scene that don't take the place of anything.
+inline std::span<const Light> ownLights(const Scene& scene) {
+  return std::span(scene.lights).first(scene.lights.size() - scene.source_lights);
+}
+
+/// Removes all lights, and sources; nothing emits any more.
+void clearLights(Scene& scene);
+
+/// The scene's environment, or null: of several the first.
+const LightSource* environmentOf(const Scene& scene);
 
 /// The indices of all objects of the scene.
 inline std::vector<std::uint32_t> allObjects(const Scene& scene) {

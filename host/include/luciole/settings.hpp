@@ -214,4 +214,8 @@ void applySettings(const SettingValues& values, WriteOptions& options);
 /// none is and shadows are asked for.
 void castShadows(const std::string& who, bool asked_for, Scene& scene);
 
+/// Sets how many lights take the place of each source by the value of "light_count". "": as the scene says;
+/// "auto" is left to Renderer::chooseLightCounts().
+void setLightCounts(const std::string& how_many, Scene& scene);
+
 }  // namespace luciole

@@ -15,7 +15,7 @@ _opencl.prepare()
 
 from luciole._errors import InputError, MachineError  # noqa: E402
 from luciole.experiment import scale  # noqa: E402
-from luciole.lights import DirectionalLights, PointLights, SpotLights  # noqa: E402
+from luciole.lights import AreaLight, DirectionalLights, Environment, PointLights, SpotLights  # noqa: E402
 from luciole.picture import (  # noqa: E402
     GBuffer,
     Picture,
@@ -33,8 +33,10 @@ from luciole.picture import (  # noqa: E402
 from luciole.scene import Camera, Fog, Material, Mesh, Scene, load  # noqa: E402
 
 __all__ = [
+    "AreaLight",
     "Camera",
     "DirectionalLights",
+    "Environment",
     "Fog",
     "GBuffer",
     "InputError",

@@ -2,18 +2,21 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike, fspath
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from luciole import _luciole
-from luciole._arrays import Array, array, choice, listed, refuse_non_finite
+from luciole._arrays import Array, array, choice, listed, number, refuse_non_finite, vector, whole
 from luciole._errors import InputError
 
 POINT, DIRECTIONAL, SPOT = range(3)
 _WINDOWS = ("smooth", "khr")
 _FALLOFFS = ("exponent", "cone")
+#: Of one environment or area light, at most.
+MOST_SOURCE_LIGHTS = 1 << 20
 
 
 def _rows(value: object, name: str, width: int, count: int) -> Array:
@@ -215,7 +218,82 @@ class DirectionalLights(_Lights):
         )
 
 
-Lights: TypeAlias = PointLights | SpotLights | DirectionalLights
+@dataclass
+class Environment:
+    """A sky all around: many directional lights take its place, and it is the background.
+
+    image: (H, 2H, 3) float32, linear, by latitude and longitude, with −z in the middle of a row and +x to its right; or the
+    path of a picture file. White of 1 all around lights a diffuse colour of 1 to 1. color: what multiplies it. rotate: degrees
+    about +y, counter-clockwise as seen from above. count: how many lights. A scene has one.
+    """
+
+    image: Any
+    color: Any = 1.0
+    rotate: float = 0.0
+    count: int = 4096
+    cast_shadows: bool = True
+    group: str = ""
+
+    def _source(self) -> "_luciole.Source":
+        is_path = isinstance(self.image, (str, PathLike))
+        return _luciole.environment(
+            fspath(self.image) if is_path else array(self.image, "lights.image", ("H", "W", 3)),
+            number(self.rotate, "lights.rotate", -1e18, 1e18),
+            _source_color(self.color),
+            whole(self.count, "lights.count", 0, MOST_SOURCE_LIGHTS),
+            bool(self.cast_shadows),
+            str(self.group),
+        )
+
+
+@dataclass
+class AreaLight:
+    """A flat face that shines from its front alone and isn't seen: many lights take its place.
+
+    position: of its middle, world, metres. direction: the way it shines. width, height: metres; the height goes about the way
+    of `up`. color: its radiance. disc: an ellipse instead of a rectangle. count: how many lights.
+    """
+
+    position: Any
+    direction: Any
+    width: float = 1.0
+    height: float = 1.0
+    color: Any = 1.0
+    up: Any = None
+    disc: bool = False
+    count: int = 256
+    cast_shadows: Any = False
+    group: str = ""
+
+    def _source(self) -> "_luciole.Source":
+        direction = vector(self.direction, "lights.direction")
+        length = float(np.linalg.norm(direction))
+        steep = abs(direction[1]) > 0.9 * length
+        up = ((0.0, 0.0, -1.0) if steep else (0.0, 1.0, 0.0)) if self.up is None else vector(self.up, "lights.up")
+        if not np.linalg.norm(np.cross(up, direction)) > 1e-8 * length * float(np.linalg.norm(up)):
+            raise InputError("lights.up: expected a direction that isn't parallel to `direction`")
+        return _luciole.face(
+            bool(self.disc),
+            vector(self.position, "lights.position"),
+            direction,
+            up,
+            number(self.width, "lights.width", 1e-18, 1e18),
+            number(self.height, "lights.height", 1e-18, 1e18),
+            _source_color(self.color),
+            whole(self.count, "lights.count", 0, MOST_SOURCE_LIGHTS),
+            bool(self.cast_shadows),
+            str(self.group),
+        )
+
+
+def _source_color(value: object) -> tuple[float, float, float]:
+    made = vector(value, "lights.color")
+    if min(made) < 0:
+        raise InputError(f"lights.color: expected 0 or more, got {min(made):g}")
+    return made
+
+
+Lights: TypeAlias = PointLights | SpotLights | DirectionalLights | Environment | AreaLight
 
 
 def _angles(degrees: object, name: str, count: int, most: float) -> Array:
@@ -237,14 +315,20 @@ def _directions(value: object, count: int) -> Array:
 
 def lights_of(value: object) -> list[Lights]:
     """`value`, lights or a sequence of them, as a list."""
-    kinds = (PointLights, SpotLights, DirectionalLights)
-    expected = "PointLights, SpotLights, DirectionalLights or a list of them"
+    kinds = (PointLights, SpotLights, DirectionalLights, Environment, AreaLight)
+    expected = "PointLights, SpotLights, DirectionalLights, Environment, AreaLight or a list of them"
     return [] if value is None else listed(value, kinds, "lights", expected)
 
 
 def set_lights(scene: "_luciole.Scene", value: object) -> None:
     """Replaces a scene's lights. Where one of them is wrong, the scene keeps those that it has."""
-    scene.set_lights([some._columns() for some in lights_of(value)])
+    lights = lights_of(value)
+    if sum(isinstance(some, Environment) for some in lights) > 1:
+        raise InputError("lights: two environments; a scene has one")
+    scene.set_lights(
+        [some._columns() for some in lights if isinstance(some, _Lights)],
+        [some._source() for some in lights if isinstance(some, (Environment, AreaLight))],
+    )
 
 
 def get_lights(scene: "_luciole.Scene") -> list[Lights]:
@@ -280,4 +364,6 @@ def get_lights(scene: "_luciole.Scene") -> list[Lights]:
                         **shared, direction=a["direction"], angle=np.degrees(2 * a["half_angle"]), group=group
                     )
                 )
+    for of in scene.sources():
+        found.append(Environment(**of) if "image" in of else AreaLight(**of))
     return found

@@ -11,7 +11,7 @@ import numpy as np
 from luciole import _luciole
 from luciole._arrays import MOST_SIDE, Array, Doubles, array, choice, listed, number, size_of, vector, whole
 from luciole._errors import InputError
-from luciole.lights import Lights, get_lights, set_lights
+from luciole.lights import MOST_SOURCE_LIGHTS, Lights, get_lights, set_lights
 
 #: A color: three numbers, or one for all three.
 Color: TypeAlias = Sequence[float] | float
@@ -28,7 +28,8 @@ class Material:
     ambient, diffuse, specular, emission: linear colours, ≥ 0. shininess: the highlight's exponent, ≥ 0. alpha: opacity, 0 to 1;
     where it, or a map's, is below alpha_cutoff the surface is a hole; with blended it is dithered by its opacity. double_sided:
     both sides are seen. model: one of MODELS, in place of the picture's. Maps: pictures as arrays (H, W), (H, W, 3) or
-    (H, W, 4) of uint8 (sRGB) or floats from 0 to 1 (linear); normal_map: tangent-space normals · ½ + ½, y up.
+    (H, W, 4) of uint8 (sRGB) or floats from 0 to 1 (linear); normal_map: tangent-space normals · ½ + ½, y up. emits: how many lights, with
+    shadows, take the place of an object's triangles of it that have an emission.
     """
 
     diffuse: Color = (0.8, 0.8, 0.8)
@@ -46,6 +47,7 @@ class Material:
     normal_map: Any = None
     alpha_map: Any = None
     normal_scale: float = 1.0
+    emits: int = 0
     name: str = ""
 
 
@@ -435,6 +437,7 @@ def _set_material(scene: "_luciole.Scene", index: int, given: Material, maps: Se
             model,
             list(maps),
             number(given.normal_scale, "material.normal_scale", -1000, 1000),
+            whole(given.emits, "material.emits", 0, MOST_SOURCE_LIGHTS),
         )
     )
 
@@ -442,8 +445,8 @@ def _set_material(scene: "_luciole.Scene", index: int, given: Material, maps: Se
 class Scene:
     """Everything a picture is made of.
 
-    meshes: Mesh, or meshes of trimesh and Open3D, or a list of them. lights: PointLights, SpotLights, DirectionalLights, or a
-    list of them; None: some that show the meshes; []: none. cameras: Camera or a list; none: one that sees all. background,
+    meshes: Mesh, or meshes of trimesh and Open3D, or a list of them. lights: PointLights, SpotLights, DirectionalLights,
+    Environment, AreaLight, or a list of them; None: some that show the meshes; []: none. cameras: Camera or a list; none: one that sees all. background,
     ambient: linear colours. fog: Fog. size: of pictures that don't say theirs. lighting: False shows surfaces unlit.
 
     Lights, cameras, transforms, materials and surroundings may be changed at any time. Any thread may use a scene; calls take
@@ -642,13 +645,14 @@ def load(
     animation: str = "",
     tangents: bool = False,
     set: Mapping[str, Any] | Sequence[str] = (),  # noqa: A002
+    environment: str | PathLike[str] = "",
 ) -> Scene:
     """A scene from a file: Luciole's .json, .obj, .gltf or .glb, completed by a camera and lights where it has none.
 
     frame: at which a scene that moves is shown. missing_textures: "warn" draws without them. strict: what breaks the format's
     rules is refused, not repaired. search: folders of files that aren't where the scene says. variant, animation: of a glTF
     file, by name. tangents: also where no normal map needs them, for surface files. set: other values in places of the file,
-    ``{"lights[0].intensity": 4}`` or ``["lights[0].intensity=4"]``. Raises InputError, or MachineError where it doesn't fit
+    ``{"lights[0].intensity": 4}`` or ``["lights[0].intensity=4"]``. environment: a picture of the sky, in place of the scene's (see Environment). Raises InputError, or MachineError where it doesn't fit
     into memory.
     """
     warns = choice(missing_textures, "missing_textures", ("error", "warn")) == 1
@@ -667,5 +671,6 @@ def load(
             animation=animation,
             tangents=tangents,
             changes=changes,
+            environment=fspath(environment),
         )
     )

@@ -38,6 +38,7 @@ class LightKeywords(TypedDict, total=False):
 
     shadows: Literal["auto", "off", "hard", "pcf", "soft", "exact", "soft-exact"]
     cast_shadows: Literal["all", "marked", "none"]
+    light_count: int | Literal["auto"]
     soft_samples: int
     pcf_width: int
     shadow_memory: int

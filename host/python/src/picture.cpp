@@ -60,14 +60,19 @@ class ChangeForPicture {
       materials_ = scene.materials;
       takeFacets(scene);
     }
-    const std::string &shadows = valueOf(request, "shadows"), &casters = valueOf(request, "cast_shadows");
-    const bool asked_for = request.shadows_given && shadows != "off";
-    if (casters.empty() && !asked_for) return;
+    if (const std::string& count = valueOf(request, "light_count"); !count.empty()) {
+      sources_ = countsOf(scene);
+      setLightCounts(count, scene);
+    }
+    if (valueOf(request, "cast_shadows").empty() && !request.shadows_given) return;
     for (const Light& light : scene.lights) marks_.push_back(light.shadow);
-    castShadows(casters, asked_for, scene);
+    cast(request);
   }
   ~ChangeForPicture() {
-    for (std::size_t i = 0; i < marks_.size(); ++i) scene_.lights[i].shadow = marks_[i];
+    // All but those of sources, if they have become fewer or more.
+    for (std::size_t i = 0; i < std::min(marks_.size(), scene_.lights.size()); ++i)
+      scene_.lights[i].shadow = marks_[i];
+    if (sources_) takeBackCounts();
     if (materials_) scene_.materials = std::move(*materials_);
     scene_.user_models.resize(model_count_);
   }
@@ -76,12 +81,35 @@ class ChangeForPicture {
 
   Model model() const { return model_; }
 
+  /// Again, where there are other lights.
+  void cast(const Request& request) {
+    const std::string& shadows = valueOf(request, "shadows");
+    castShadows(valueOf(request, "cast_shadows"), request.shadows_given && shadows != "off", scene_);
+  }
+
  private:
+  /// How many lights take the place of each source and of what glows.
+  static std::vector<std::uint32_t> countsOf(const Scene& scene) {
+    std::vector<std::uint32_t> counts;
+    for (const LightSource& source : scene.sources) counts.push_back(source.count);
+    for (const Object& object : scene.objects) counts.push_back(object.emits);
+    for (const Material& material : scene.materials) counts.push_back(material.emits);
+    return counts;
+  }
+  void takeBackCounts() {
+    auto next = sources_->begin();
+    for (LightSource& source : scene_.sources) source.count = *next++;
+    for (Object& object : scene_.objects) object.emits = *next++;
+    for (Material& material : scene_.materials) material.emits = *next++;
+    addSourceLights(scene_);
+  }
+
   Scene& scene_;
   std::size_t model_count_;
   Model model_ = Model::kPhong;
   std::optional<std::vector<Material>> materials_;
   std::vector<bool> marks_;
+  std::optional<std::vector<std::uint32_t>> sources_;  ///< countsOf() before
 };
 
 /// Ends a picture on Ctrl-C, which Python's main thread is told of, and tells how far it is. It is called
@@ -138,6 +166,8 @@ auto makeOf(SceneHandle& handle, const Request& request, const Make& make) {
   const nb::gil_scoped_release unlocked;
   const auto turn = handle.turn();
   const ChangeForPicture change(request, handle.scene());
+  if (valueOf(request, "light_count") == "auto")
+    throw InputError("light_count: only render chooses, expected a number");
   return make(handle.scene(), settingsOf(request, handle.scene(), change.model()));
 }
 
@@ -149,10 +179,14 @@ std::unique_ptr<PictureHandle> render(SceneHandle& handle, const std::shared_ptr
   auto picture = std::make_unique<PictureHandle>();
   handle.withRenderer(device, [&](Renderer& renderer) {
     Scene& scene = renderer.scene();
-    const ChangeForPicture change(request, scene);
+    ChangeForPicture change(request, scene);
     RenderSettings settings = settingsOf(request, scene, change.model());
     settings.band_height = bandHeight(settings, scene.lights.size());
     Stats& stats = picture->stats;
+    if (valueOf(request, "light_count") == "auto") {
+      renderer.chooseLightCounts(settings, stats);
+      change.cast(request);
+    }
     if (valueOf(request, "exposure") == "auto") {
       stats.measured_exposure = renderer.measureExposure(settings, stats);
       settings.exposure = float(*stats.measured_exposure);

@@ -4,6 +4,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include <sys/mman.h>
@@ -19,9 +20,11 @@
 #include <luciole/pose.hpp>
 #include <luciole/validate_scene.hpp>
 #include <set>
+#include <span>
 #include <string>
 #include <thread>
 #include <tuple>
+#include <variant>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -98,6 +101,12 @@ std::uint32_t groupNamed(const std::string& name, Scene& scene) {
   return number;
 }
 
+/// An environment or a face, and its group's name.
+struct NamedSource {
+  LightSource source;
+  std::string group;
+};
+
 /// Asks for memory of huge pages, before it is touched: it then takes a tenth of the time to get.
 void preferHugePages(void* memory, std::size_t bytes) {
   constexpr std::uintptr_t kPage = std::uintptr_t(2) << 20;
@@ -108,9 +117,13 @@ void preferHugePages(void* memory, std::size_t bytes) {
 
 /// Replaces the scene's lights. Those that it has had keep their memory, which takes longer to get than to
 /// fill.
-void setLights(SceneHandle& handle, const std::vector<const LightColumns*>& all) {
+void setLights(SceneHandle& handle, const std::vector<const LightColumns*>& all,
+               const std::vector<const NamedSource*>& sources) {
   inTurn(handle, [&] {
     Scene& scene = handle.sceneToChange();
+    scene.source_lights = 0;
+    scene.sources.clear();
+    scene.animation.sources.clear();
     std::size_t count = 0;
     for (const LightColumns* columns : all) count += columns->count;
     if (count > scene.lights.capacity()) {
@@ -128,7 +141,77 @@ void setLights(SceneHandle& handle, const std::vector<const LightColumns*>& all)
       fillLights(*columns, groupNamed(columns->group, scene), first, scene.lights);
       first += columns->count;
     }
+    for (const NamedSource* named : sources) {
+      scene.sources.push_back(named->source);
+      scene.sources.back().group = groupNamed(named->group, scene);
+    }
+    addSourceLights(scene);
   });
+}
+
+NamedSource environment(const std::variant<std::string, In<float, nb::shape<-1, -1, 3>>>& image,
+                        double rotate, const Vec3& color, std::uint32_t count, bool shadow,
+                        const std::string& group) {
+  LightSource source{.kind = SourceKind::kEnvironment, .shadow = shadow, .count = count};
+  source.radiance = vec3Of(color);
+  source.rotate = glm::radians(rotate);
+  std::vector<Warning> warnings;
+  if (const std::string* path = std::get_if<std::string>(&image)) {
+    source.sky = readSky(*path, warnings);
+  } else {
+    const auto& rows = std::get<1>(image);
+    source.sky =
+        makeSky(int(rows.shape(1)), int(rows.shape(0)), {rows.data(), rows.size()}, "image", warnings);
+  }
+  if (!warnings.empty()) throw InputError("lights: " + warnings.front().text);
+  return {source, group};
+}
+
+NamedSource face(bool is_disc, const Vec3& position, const Vec3& direction, const Vec3& up, double width,
+                 double height, const Vec3& color, std::uint32_t count, bool shadow,
+                 const std::string& group) {
+  LightSource source{
+      .kind = is_disc ? SourceKind::kDisc : SourceKind::kRectangle, .shadow = shadow, .count = count};
+  source.radiance = vec3Of(color);
+  source.position = dvec3Of(position);
+  source.direction = glm::normalize(dvec3Of(direction));
+  source.up = glm::normalize(dvec3Of(up));
+  source.width = width;
+  source.height = height;
+  return {source, group};
+}
+
+/// What Python's Environment or AreaLight are of.
+nb::list listOfSources(SceneHandle& handle) {
+  std::vector<NamedSource> all;
+  inTurn(handle, [&] {
+    const Scene& scene = handle.scene();
+    for (const LightSource& source : scene.sources)
+      all.push_back({source, source.group > 0 ? scene.light_groups[source.group] : ""});
+  });
+  nb::list list;
+  for (const auto& [source, group] : all) {
+    nb::dict of;
+    of["color"] = listOf(source.radiance);
+    of["count"] = source.count;
+    of["cast_shadows"] = source.shadow;
+    of["group"] = group;
+    if (source.kind == SourceKind::kEnvironment) {
+      const SkyLevel& level = source.sky->levels[0];
+      of["image"] = arrayOf(std::vector<float>(level.texels.begin(), level.texels.end()),
+                            {std::size_t(level.height), std::size_t(level.width), 3});
+      of["rotate"] = glm::degrees(source.rotate);
+    } else {
+      of["disc"] = source.kind == SourceKind::kDisc;
+      of["position"] = listOf(source.position);
+      of["direction"] = listOf(source.direction);
+      of["up"] = listOf(source.up);
+      of["width"] = source.width;
+      of["height"] = source.height;
+    }
+    list.append(of);
+  }
+  return list;
 }
 
 /// What lights of one array share: how they fade, and their group.
@@ -178,7 +261,7 @@ nb::dict lightArrays(SceneHandle& handle, int kind, int window, int falloff, con
   std::vector<float> color, ambient, specular, attenuation, range, exponent;
   std::vector<std::uint8_t> shadow;
   inTurn(handle, [&] {
-    const std::vector<Light>& lights = handle.scene().lights;
+    const std::span<const Light> lights = ownLights(handle.scene());
     const auto add = [](auto& to, const auto& v) { to.insert(to.end(), {v.x, v.y, v.z}); };
     for (const Light& light : lights) {
       if (int(light.kind) != kind || familyOf(light, handle.scene()) != family) continue;
@@ -218,7 +301,8 @@ nb::dict lightArrays(SceneHandle& handle, int kind, int window, int falloff, con
 void fillMaterial(Material& material, const std::string& name, const Vec3& ambient, const Vec3& diffuse,
                   const Vec3& specular, const Vec3& emission, double shininess, double alpha,
                   double alpha_cutoff, bool blended, bool double_sided, int model,
-                  const std::array<int, 4>& maps, double normal_scale) {
+                  const std::array<int, 4>& maps, double normal_scale, std::uint32_t emits) {
+  material.emits = emits;
   material.name = name;
   material.ambient = vec3Of(ambient);
   material.diffuse = vec3Of(diffuse);
@@ -294,11 +378,12 @@ void bindLights(nb::class_<SceneHandle>& scene) {
            [](SceneHandle& handle) {
              std::set<LightFamily> families;
              inTurn(handle, [&] {
-               for (const Light& light : handle.scene().lights)
+               for (const Light& light : ownLights(handle.scene()))
                  families.insert(familyOf(light, handle.scene()));
              });
              return std::vector<LightFamily>(families.begin(), families.end());
            })
+      .def("sources", listOfSources)
       .def("light_count",
            [](SceneHandle& handle) { return inTurn(handle, [&] { return handle.scene().lights.size(); }); });
 }
@@ -331,7 +416,7 @@ void bindParts(nb::class_<SceneHandle>& scene) {
            [](SceneHandle& handle, int index, const std::string& name, const Vec3& ambient,
               const Vec3& diffuse, const Vec3& specular, const Vec3& emission, double shininess, double alpha,
               double alpha_cutoff, bool blended, bool double_sided, int model, const std::array<int, 4>& maps,
-              double normal_scale) {
+              double normal_scale, std::uint32_t emits) {
              return inTurn(handle, [&] {
                const bool is_new = index < 0;
                Scene& to = is_new ? handle.sceneToBuild("materials") : handle.sceneToChange();
@@ -339,7 +424,9 @@ void bindParts(nb::class_<SceneHandle>& scene) {
                if (is_new) to.materials.emplace_back();
                if (std::size_t(index) >= to.materials.size()) throw InputError("materials: no such index");
                fillMaterial(to.materials[std::size_t(index)], name, ambient, diffuse, specular, emission,
-                            shininess, alpha, alpha_cutoff, blended, double_sided, model, maps, normal_scale);
+                            shininess, alpha, alpha_cutoff, blended, double_sided, model, maps, normal_scale,
+                            emits);
+               if (!is_new) addSourceLights(to);
                return index;
              });
            })
@@ -363,6 +450,7 @@ void bindParts(nb::class_<SceneHandle>& scene) {
                  throw InputError("transforms: more than there are objects");
                for (std::size_t i = 0; i < transforms.shape(0); ++i)
                  to.objects[first + i].object_to_world = matrixOf(transforms.data() + 16 * i);
+               if (to.source_lights > 0) addSourceLights(to);
              });
            })
       .def("transforms",
@@ -499,6 +587,9 @@ void bindScene(nb::module_& module) {
              nb::arg("specular").none(), nb::arg("attenuation"), nb::arg("range"), nb::arg("window"),
              nb::arg("falloff"), nb::arg("cutoff"), nb::arg("inner_cone"), nb::arg("exponent"),
              nb::arg("radius"), nb::arg("half_angle"), nb::arg("cast_shadows"), nb::arg("group"));
+  nb::class_<NamedSource>(module, "Source");
+  module.def("environment", environment);
+  module.def("face", face);
   nb::class_<SceneHandle> scene(module, "Scene");
   scene.def(nb::init<>());
   bindLights(scene);
@@ -515,6 +606,7 @@ void bindScene(nb::module_& module) {
                Scene& to = handle.sceneToBuild("scene");
                to.says_light = says_light;
                validateScene(to);
+               addSourceLights(to);
                completeScene(to, false);
              });
            })
@@ -525,18 +617,20 @@ void bindScene(nb::module_& module) {
       "load",
       [](const std::string& path, double frame, bool missing_textures_warn, bool strict,
          const std::vector<std::string>& search, const std::string& variant, const std::string& animation,
-         bool tangents, const std::vector<std::string>& changes) {
+         bool tangents, const std::vector<std::string>& changes, const std::string& environment) {
         const nb::gil_scoped_release unlocked;
         LoadSettings settings{.strict = strict,
                               .search = search,
                               .choice = {variant, animation},
                               .tangents = tangents,
-                              .changes = changes};
+                              .changes = changes,
+                              .environment = environment};
         if (missing_textures_warn) settings.missing = MissingTextures::kWarn;
         return std::make_unique<SceneHandle>(loadScene(path, frame, settings));
       },
       nb::arg("path"), nb::arg("frame"), nb::arg("missing_textures_warn"), nb::arg("strict"),
-      nb::arg("search"), nb::arg("variant"), nb::arg("animation"), nb::arg("tangents"), nb::arg("changes"));
+      nb::arg("search"), nb::arg("variant"), nb::arg("animation"), nb::arg("tangents"), nb::arg("changes"),
+      nb::arg("environment"));
 }
 
 }  // namespace luciole::python

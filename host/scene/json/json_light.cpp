@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scene/json/json_keys.hpp"
+#include "scene/json/json_source.hpp"
 #include "scene/json/light_list.hpp"
 #include "scene/posing.hpp"
 
@@ -18,7 +19,11 @@ LightKind readKind(const JsonNode& node) {
   if (type == "point") return LightKind::kPoint;
   if (type == "directional") return LightKind::kDirectional;
   if (type == "spot") return LightKind::kSpot;
-  refuse(node, fmt::format("expected \"point\", \"directional\" or \"spot\", got {}", node.json->dump()));
+  refuse(
+      node,
+      fmt::format(
+          "expected \"point\", \"directional\", \"spot\", \"environment\", \"rectangle\" or \"disc\", got {}",
+          node.json->dump()));
 }
 
 RangeWindow readWindow(const JsonNode& node) {
@@ -228,7 +233,11 @@ std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& li
 
 }  // namespace
 
-void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene) {
+void readLight(const JsonNode& node, const SearchFolders& where, LightGroupNumbers& groups, Scene& scene) {
+  if (isSource(node)) {
+    readSource(node, where, readGroup(node, groups, scene), scene);
+    return;
+  }
   allowKeys(node, {"type",     "position",   "direction",     "target",      "color",  "intensity",
                    "ambient",  "diffuse",    "specular",      "attenuation", "range",  "cutoff",
                    "exponent", "inner_cone", "outer_cone",    "shadow",      "radius", "angle",

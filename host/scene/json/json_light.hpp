@@ -10,8 +10,9 @@
 namespace luciole {
 
 /// Reads an element of "lights", and its motion, into the scene. A light that is switched off ("enabled":
-/// false) is checked but not added. groups: of the scene. Throws InputError.
-void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene);
+/// false) is checked but not added. Environments and shining faces are added to the scene's sources. groups:
+/// of the scene. Throws InputError.
+void readLight(const JsonNode& node, const SearchFolders& where, LightGroupNumbers& groups, Scene& scene);
 
 /// Reads an element of "light_fields", and the file that it may name, found as by findFile(). Throws
 /// InputError.

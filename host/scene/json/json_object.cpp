@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "luciole/primitives.hpp"
+#include "scene/glowing_patches.hpp"
 #include "scene/json/json_keys.hpp"
+#include "scene/json/json_source.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/lights/light_field.hpp"
 #include "scene/load_textures.hpp"
@@ -81,7 +83,7 @@ Model readModel(const JsonNode& node, const SearchFolders& where, Scene& scene) 
 void readMaterial(const JsonNode& node, const SearchFolders& where, Scene& scene, Material& material) {
   allowKeys(node, {"ambient", "diffuse", "specular", "emission", "shininess", "diffuse_map", "emission_map",
                    "normal_map", "bump_map", "normal_scale", "alpha_map", "alpha", "alpha_cutoff", "blend",
-                   "double_sided", "model"});
+                   "double_sided", "model", "emits"});
   const bool is_alike = material.ambient == material.diffuse;
   if (const auto n = find(node, "diffuse")) material.diffuse = readColor(*n);
   if (is_alike) material.ambient = material.diffuse;
@@ -116,6 +118,7 @@ void readMaterial(const JsonNode& node, const SearchFolders& where, Scene& scene
   if (const auto n = find(node, "alpha_cutoff"))
     material.alpha_cutoff = static_cast<float>(readNumber(*n, 0, 1));
   if (const auto n = find(node, "double_sided")) material.double_sided = readBool(*n);
+  if (const auto n = find(node, "emits")) material.emits = readEmits(*n);
   if (const auto n = find(node, "model")) material.model = readModel(*n, where, scene);
   // They are another surface's than the file's facets.
   if (find(node, "specular") || find(node, "shininess")) material.facets.reset();
@@ -344,10 +347,22 @@ bool takes(const JsonNode& object, const char* key, const std::string& path) {
   return n && readBool(*n);
 }
 
+/// Lets those of the scene's objects from number `first` on emit that glow: together as much as the node
+/// says.
+void letGlow(const JsonNode& node, std::size_t first, Scene& scene) {
+  const std::uint32_t count = readEmits(node);
+  std::vector<Object*> glowing;
+  for (std::size_t i = first; i < scene.objects.size(); ++i)
+    if (glows(scene, scene.objects[i])) glowing.push_back(&scene.objects[i]);
+  if (glowing.empty() && count > 0) refuse(node, "nothing of the object has an emission");
+  for (Object* object : glowing)
+    object->emits = std::max(count / std::uint32_t(glowing.size()), std::min(count, 1u));
+}
+
 void readObject(const JsonNode& node, const SearchFolders& where, Loaded& loaded, Scene& scene) {
-  allowKeys(node,
-            {"mesh", "variant", "animation", "primitive", "translate", "rotate", "scale", "material",
-             "segments", "minor_radius", "uv_scale", "keys", "interpolation", "name", "lights", "cameras"});
+  allowKeys(node, {"mesh", "variant", "animation", "primitive", "translate", "rotate", "scale", "material",
+                   "segments", "minor_radius", "uv_scale", "keys", "interpolation", "name", "lights",
+                   "cameras", "emits"});
   const Placement placement = readPlacement(node, scene.animation);
   int material = -1;
   if (const auto n = find(node, "material")) {
@@ -392,7 +407,9 @@ void readObject(const JsonNode& node, const SearchFolders& where, Loaded& loaded
     refuse(node, fmt::format("a scene may have {} cameras at most", kMostObjects));
   std::string name;
   if (const auto n = find(node, "name")) name = readText(*n);
+  const std::size_t first = scene.objects.size();
   placeFile(node, *file, parts, placement, material, name, scene);
+  if (const auto n = find(node, "emits")) letGlow(*n, first, scene);
 }
 
 }  // namespace

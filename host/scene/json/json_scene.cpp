@@ -239,7 +239,7 @@ SceneFile readScene(SceneFile read, const std::string& text, const std::string& 
   std::size_t light_count = 0;
   const auto read_member = [&](const JsonNode& node) {
     if (node.parent->key == "lights")
-      readLight(node, groups, scene);
+      readLight(node, where, groups, scene);
     else
       readCamera(node, std::string(node.key), scene);
   };

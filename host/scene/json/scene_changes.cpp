@@ -221,7 +221,7 @@ void changeLight(const SceneChange& change, std::size_t number, Scene& scene) {
     Scene read;
     read.light_groups = scene.light_groups;
     LightGroupNumbers groups = lightGroupNumbers(read);
-    readLight(node, groups, read);
+    readLight(node, {}, groups, read);
     if (!read.animation.lights.empty()) refuse(node, "a mesh file's light can't be given keys");
     scene.light_groups = read.light_groups;
     if (read.lights.empty()) {  // it is switched off; its place stays, as what moves counts on it

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 
 #include "base/text_file.hpp"
@@ -80,9 +81,10 @@ glm::dvec3 directionToRead(const glm::dvec3& direction) {
   return direction;
 }
 
-/// Appends the lights and the end of a scene's file. groups: the names of the scene's.
-void appendLights(const std::vector<Light>& lights, const std::vector<std::string>& groups,
-                  std::string& text) {
+/// Appends the lights and the end of a scene's file. groups: the names of the scene's. sources: as elements
+/// of the list, too.
+void appendLights(std::span<const Light> lights, const std::vector<std::string>& groups, std::string& text,
+                  const std::vector<nlohmann::ordered_json>& sources = {}) {
   text += "  \"lights\": [";
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -120,10 +122,35 @@ void appendLights(const std::vector<Light>& lights, const std::vector<std::strin
     if (!light.name.empty()) fmt::format_to(out, ", \"name\": {}", quoted(light.name));
     text += light.shadow ? ", \"shadow\": true}" : "}";
   }
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    text += (i + lights.size() ? ",\n    " : "\n    ") + sources[i].dump();
   text += "\n  ]\n}\n";
 }
 
 nlohmann::ordered_json colorJson(const glm::vec3& color) { return {color.x, color.y, color.z}; }
+
+/// An environment or a face as an element of "lights".
+nlohmann::ordered_json sourceJson(const Scene& scene, const LightSource& source, const std::string& folder) {
+  const auto list = [](const glm::dvec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  nlohmann::ordered_json json;
+  if (source.kind == SourceKind::kEnvironment) {
+    json = {{"type", "environment"}, {"image", pathFrom(folder, source.sky->name)}};
+    json["rotate"] = degreesOf(source.rotate);
+  } else {
+    json["type"] = source.kind == SourceKind::kDisc ? "disc" : "rectangle";
+    json["position"] = list(source.position);
+    json["direction"] = list(directionToRead(source.direction));
+    json["up"] = list(source.up);
+    json["width"] = source.width;
+    json["height"] = source.height;
+  }
+  json["color"] = colorJson(source.radiance);
+  json["count"] = source.count;
+  json["shadow"] = source.shadow;
+  if (source.group > 0) json["group"] = scene.light_groups[source.group];
+  if (!source.name.empty()) json["name"] = source.name;
+  return json;
+}
 
 nlohmann::ordered_json fogJson(const Fog& fog) {
   nlohmann::ordered_json json{{"mode", fog.mode == FogMode::kLinear ? "linear"
@@ -180,6 +207,8 @@ static OrderedJson sceneFrom(const std::string& folder, const std::string& scene
     for (OrderedJson& object : scene["objects"]) movePath(object, "mesh");
   if (scene.contains("light_fields"))
     for (OrderedJson& field : scene["light_fields"]) movePath(field, "csv");
+  if (scene.contains("lights"))
+    for (OrderedJson& light : scene["lights"]) movePath(light, "image");
   // A schema may be a path or a URL.
   if (scene.contains("$schema") && scene["$schema"].get<std::string>().find(':') == std::string::npos)
     movePath(scene, "$schema");
@@ -266,6 +295,13 @@ SavedScene savedScene(const std::string& scene_path, const std::string& folder, 
     keeps_lights &= change.place[0].key != "lights";
     if (change.place[0].key == "materials") of_materials.push_back(std::move(change));
   }
+  // An environment that the file doesn't have.
+  const auto lists_sky = [&] {
+    const OrderedJson lights = json.value("lights", OrderedJson::array());
+    return std::any_of(lights.begin(), lights.end(),
+                       [](const OrderedJson& light) { return light.value("type", "") == "environment"; });
+  };
+  keeps_lights &= !environmentOf(scene) || lists_sky();
   Json materials = Json::object();
   if (json.contains("materials")) materials["materials"] = Json::parse(json["materials"].dump());
   for (SceneChange& change : of_materials) {
@@ -290,7 +326,10 @@ SavedScene savedScene(const std::string& scene_path, const std::string& folder, 
   } else {
     eraseLights(json);
     saved.text += membersText(json);
-    appendLights(scene.lights, scene.light_groups, saved.text);
+    std::vector<OrderedJson> sources;
+    for (const LightSource& source : scene.sources) sources.push_back(sourceJson(scene, source, folder));
+    appendLights(ownLights(scene), scene.light_groups,
+                 saved.text, sources);
   }
   return saved;
 }

@@ -32,7 +32,7 @@ void placeLights(LitStage& stage, FieldShape shape, std::uint64_t lights) {
   const glm::dvec3 eye(stage.gbuffer.camera.camera_to_world[3]);
   LightField field = fieldInBox(shape, seenBox(stage.seen, eye));
   field.count = lights;
-  stage.scene.lights.clear();
+  clearLights(stage.scene);
   expandLightField(field, stage.scene);
   spreadEverywhere(stage.scene.lights, stage.seen);
 }

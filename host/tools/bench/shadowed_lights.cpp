@@ -61,7 +61,7 @@ struct ShadowedStage {
 /// Fills in all but `lit`.
 void prepareJudgement(ShadowedStage& stage) {
   LitStage& lit = stage.lit;
-  lit.scene.lights.clear();
+  clearLights(lit.scene);
   std::vector<glm::ivec2> judged;
   for (const glm::ivec2& pixel : lit.judged) {
     const std::optional<PixelTerms> terms = referenceTerms(lit.scene, lit.gbuffer, pixel, {});
@@ -345,6 +345,7 @@ SpeedTable measureShadowedLights(const SpeedInput& input) {
                   {"within_error", "pixels within E, %", 1},
                   {"within_interval", "within what is stated, %", 1}}};
   for (Scene& scene : scenes) {
+    clearLights(scene);
     scene.lights = {Light{.shadow = true}};  // so that the G-buffer has what shadows need
     ShadowedStage stage;
     stage.lit = setStage(std::move(scene), size, kTracedPixels);

@@ -95,6 +95,7 @@ void bake(CommandContext& context, BakeOptions& options) {
   Scene scene = timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, frame, options); });
   scene.fog = {};
   scene.background = glm::vec3(0.0f);
+  scene.sources.clear();  // their lights stay
   RenderSettings settings = renderSettings(options, scene);
   const std::uint32_t object = objectNamed(scene, options.object);
   logEvent("frame_begun", {{"frame", frame}});

@@ -148,7 +148,7 @@ void generateLights(const LightsOptions& options) {
     scene = loadScene(options.scene, 1, options.load);
     std::erase(scene.warnings, noLightWarning(scene));
     reportWarnings(scene.warnings);
-    scene.lights.clear();
+    clearLights(scene);
     seen = visiblePoints(scene, scene.cameras.front(), scene.size.value_or(glm::ivec2(1280, 720)),
                          kMeasuredPlaces, 0);
   }

@@ -165,7 +165,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     if (is_one_picture)
       for (const char* name : {"seed", "light_groups", "aov"}) add(name);
   }
-  if (groups & kCastOption) add("cast_shadows");
+  if (groups & kCastOption) {
+    add("cast_shadows");
+    add("light_count");
+  }
   if (!(groups & kColorOptions)) addLoadOptions(command, options.load);
   if (groups & kFrameOption)
     command.add_option(
@@ -216,6 +219,11 @@ void addLoadOptions(CLI::App& command, LoadSettings& settings) {
       ->take_all()
       ->type_name("FOLDER");
   command
+      .add_option("--environment", settings.environment,
+                  "a picture of the sky, by latitude and longitude or a cross of cube faces: the background, "
+                  "and lights in place of it, with shadows; instead of the scene's own")
+      ->type_name("FILE");
+  command
       .add_option(
           "--set", settings.changes,
           "a place of the scene's file and its new value, as JSON or text, such as "
@@ -231,6 +239,7 @@ std::vector<std::string> typedLoadOptions(const LoadSettings& settings) {
                                  settings.missing == MissingTextures::kWarn ? "warn" : "error"};
   if (settings.strict) words.push_back("--strict");
   for (const std::string& folder : settings.search) words.insert(words.end(), {"--search", folder});
+  if (!settings.environment.empty()) words.insert(words.end(), {"--environment", settings.environment});
   for (const std::string& change : settings.changes) words.insert(words.end(), {"--set", change});
   return words;
 }
@@ -275,6 +284,8 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
   Scene scene;
   if (options.model.ends_with(kShaderExtension))
     load.tangents |= usesTangents(std::vector{readShader(options.model, ShaderKind::kModel)});
+  if (options.value("light_count") == "auto" && !options.chooses_lights)
+    throw InputError("--light-count auto: only render chooses, expected a number");
   const double milliseconds = millisecondsOf([&] { scene = loadScene(path, frame, load); });
   logEvent("loaded", {{"scene", path},
                       {"objects", scene.objects.size()},
@@ -282,6 +293,7 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
                       {"milliseconds", eventMilliseconds(milliseconds)}});
   takeModel(options, scene);
   warnOfLooseArithmetic(options, scene);
+  setLightCounts(options.value("light_count"), scene);
   castShadows(options, scene);
   if (!options.quiet) reportWarnings(scene.warnings);
   return scene;

@@ -29,6 +29,7 @@ struct PictureOptions {
   std::vector<std::string> screens;   ///< files
   std::string exposure;               ///< stops or "auto"; empty: see measuresExposure()
   bool require_exact = false;
+  bool chooses_lights = false;  ///< the command takes --light-count auto
   std::string device;
   std::string stats;
   std::string trace;
@@ -52,7 +53,7 @@ enum OptionGroup : unsigned {
           ///< with kSampleOption also --samples-shading
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
-  kCastOption = 128,   ///< --cast-shadows
+  kCastOption = 128,   ///< --cast-shadows, --light-count
   kExactOption = 512,  ///< --require-exact
   kColorOptions =
       256,  ///< instead of all others, for pictures that aren't of a scene: what a file holds of

@@ -61,6 +61,23 @@ Crop windowOf(const RenderSettings& settings) {
   return settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
 }
 
+/// Chooses how many lights sources have, for the first of the pictures at this frame, if the options leave it
+/// open.
+void chooseLightCounts(Renderer& renderer, int frame, const RenderOptions& options,
+                       const std::vector<PictureOptions>& pictures, Stats& stats) {
+  if (options.value("light_count") != "auto") return;
+  Scene& scene = renderer.scene();
+  poseScene(scene, frame);
+  ProgressLine progress(options.quiet);
+  RenderSettings settings = settingsAt(frame, pictures.front(), scene, options.orbit);
+  settings.on_long_compile = compileReporter(progress);
+  if (!(settings.shade.light_error > 0))
+    throw InputError("--light-count auto: expected --light-error, which says how much counts may miss");
+  renderer.chooseLightCounts(settings, stats);
+  castShadows(options, scene);
+  progress.clear();
+}
+
 /// The exposure of each picture, by one a camera: measured at this frame, or none where the options say it.
 std::vector<std::optional<double>> chooseExposures(Renderer& renderer, int frame,
                                                    const RenderOptions& options,
@@ -416,6 +433,7 @@ void renderSweep(const std::vector<OpenedDevice*>& devices, const RenderOptions&
   ProgressLine progress(options.quiet);
   for (std::size_t i = 0; i < all.size(); ++i) {
     RenderOptions one = options;
+    one.chooses_lights = false;
     one.load.changes.insert(one.load.changes.end(), all[i].begin(), all[i].end());
     one.quiet = options.quiet || i > 0;  // the scene's warnings are told once
     progress.show(std::filesystem::path(options.output).filename(), i, all.size());
@@ -470,6 +488,7 @@ void renderSweep(const std::vector<OpenedDevice*>& devices, const RenderOptions&
 void addRenderCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("render", "a picture of a scene, or one a frame");
   auto options = std::make_shared<RenderOptions>();
+  options->chooses_lights = true;
   command
       ->add_option("SCENE", options->scene, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
@@ -560,6 +579,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       awaitDevice(device);
       for (const OpenedDevice* one : devices) logDevice(one->description);
       // By the first frame of all, also of those that aren't made here: every shard measures the same.
+      chooseLightCounts(renderer, choice.frames.front(), *options, pictures, stats);
       const auto exposures = chooseExposures(renderer, choice.frames.front(), *options, pictures, stats);
       context.status = is_film ? renderFilm(renderer, &device, *options, frames, exposures, std::move(stats))
                                : renderFrames(renderer, &device, *options, frames, exposures, nullptr,
@@ -580,6 +600,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     for (const PictureOptions& picture : pictures) checkOutput(picture);
     logEvent("frame_begun", {{"frame", frame}});
     bool device_is_told = false;
+    chooseLightCounts(renderer, frame, *options, pictures, stats);
     const auto exposures = chooseExposures(renderer, frame, *options, pictures, stats);
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       ProgressLine progress(options->quiet);

@@ -75,7 +75,7 @@ void setLights(Bench& bench, std::size_t index) {
   const LightsKey key{task.field, field.count, task.density, task.no_range};
   if (bench.lit_by == key) return;
   bench.lit_by.reset();  // until they are there
-  bench.scene.lights.clear();
+  clearLights(bench.scene);
   expandLightField(field, bench.scene);
   if (task.density > 0) {
     const auto [place, is_new] = bench.range_of_task.try_emplace(index);

@@ -89,7 +89,7 @@ Answer guarded(const Answering& answering) {
 Json markersOf(const Scene& scene, const Camera& camera, glm::ivec2 size) {
   const View view = cameraView(camera, size);
   Json markers = Json::array();
-  for (std::size_t i = 0; i < std::min(scene.lights.size(), kMostListed); ++i) {
+  for (std::size_t i = 0; i < std::min(ownLights(scene).size(), kMostListed); ++i) {
     const Light& light = scene.lights[i];
     if (light.kind == LightKind::kDirectional) continue;
     const glm::dvec4 clip = view.projection * view.world_to_view * glm::dvec4(light.position, 1);

@@ -58,12 +58,14 @@ std::string numberedColor(const std::string& text) {
 }  // namespace
 
 SceneValues valuesOf(const Scene& scene) {
-  return {scene.lights,  scene.materials,  scene.user_models, scene.light_groups,
-          scene.ambient, scene.background, scene.fog,         scene.lighting};
+  return {scene.lights,       scene.source_lights, scene.sources,    scene.materials, scene.user_models,
+          scene.light_groups, scene.ambient,       scene.background, scene.fog,       scene.lighting};
 }
 
 void setValues(const SceneValues& values, Scene& scene) {
   scene.lights = values.lights;
+  scene.source_lights = values.source_lights;
+  scene.sources = values.sources;
   scene.materials = values.materials;
   scene.user_models = values.user_models;
   scene.light_groups = values.light_groups;
@@ -100,6 +102,7 @@ void makeChanges(const std::vector<std::string>& numbered, Scene& scene) {
   std::vector<SceneChange> changes = readChanges(numbered);
   changeMaterials(changes, {}, scene);
   changeLoaded(changes, scene);
+  if (scene.source_lights > 0) addSourceLights(scene);  // materials may emit more or less
 }
 
 }  // namespace luciole

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,9 @@ namespace luciole {
 
 /// The values of a scene that may change while it is looked at.
 struct SceneValues {
-  std::vector<Light> lights;
+  std::vector<Light> lights;  ///< with those of sources
+  std::size_t source_lights = 0;
+  std::vector<LightSource> sources;
   std::vector<Material> materials;
   std::vector<Shader> user_models;
   std::vector<std::string> light_groups;
