@@ -54,6 +54,13 @@
     "lights with shadows that are sampled, with an interval of the error", kForSampling)                     \
   X(SampledHighlights, SAMPLED_HIGHLIGHTS, "sampled highlights", "highlights of lights that are sampled",    \
     kForSampling)                                                                                            \
+  X(SampledDirections, SAMPLED_DIRECTIONS, "sampled directions",                                             \
+    "directional lights that are sampled, apart from those with a place", kForSampling)                      \
+  X(SampledLobes, SAMPLED_LOBES, "sampled lobes", "sampled lights that shine by the cosine to an axis",      \
+    kForSampling)                                                                                            \
+  X(WideHighlights, WIDE_HIGHLIGHTS, "wide highlights",                                                      \
+    "highlights as wide as what a surface sees of the part of a source that a light stands for",             \
+    kForSampling)                                                                                            \
   X(MaterialModels, MATERIAL_MODELS, "material models", "surfaces with models of their own", 0)              \
   X(UserModels, USER_MODELS, "user models", "models from files of the user's", 0)                            \
   X(Tangents, TANGENTS, "surface tangents", "models that reflect differently along and across a surface", 0)

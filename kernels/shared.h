@@ -155,7 +155,7 @@ typedef struct {
   float4 diffuse;      // rgb; w: spot exponent
   float4 specular;     // rgb; w: scale of the cone ramp, 1 / (cos inner − cos cutoff)
   float4 ambient;      // rgb; w: unused, 0
-  float4 attenuation;  // constant, linear (1/m), quadratic (1/m²); w: unused, 0
+  float4 attenuation;  // constant, linear (1/m), quadratic (1/m²); w: Light::cell
   uint kind;           // kPointLight …
   uint khr_window;     // 1: the range window is 1 − (d/r)⁴; 0: its square
   uint cone;           // 1: spot falls off as a cone ramp; 0: as cos^exponent

@@ -35,6 +35,7 @@ FALLOFF = ("kernels", "FalloffKernels.*")
 FOG = ("kernels", "FogKernels.*")
 PHONG = ("kernels", "PhongKernels.*")
 COOK_TORRANCE = ("kernels", "CookTorranceKernel.*")
+WIDE = ("render", "*WideHighlights.*/16:WideHighlight.*")
 WARD = ("kernels", "WardKernel.*")
 OREN_NAYAR = ("kernels", "OrenNayarKernel.*")
 MODELS = ("pictures", "*MaterialModels.LightEach*")
@@ -123,6 +124,7 @@ TESTS = {
     "sampled/strata.clh": [SAMPLED, FEW_SAMPLED],
     "shade/toon.clh": [TOON],
     "shade/ward.clh": [WARD],
+    "shade/wide_lobe.clh": [WIDE],
     "exact/wide_integer.h": [EXACT_SIGN],
 }
 
@@ -243,6 +245,11 @@ MUTANTS = {
         Mutant("(lobe, 0.5f)", "(lobe, 0.49f)"),
         Mutant("(n_dot_l, 0.625f)", "(n_dot_l, 0.6f)"),
         Mutant("fma_lanes(0.25f, toon_step", "fma_lanes(0.26f, toon_step"),
+    ],
+    "shade/wide_lobe.clh": [
+        Mutant("across2 + across2", "across2"),
+        Mutant("(floatL)(2.0f), cosine, (floatL)(2.0f)", "(floatL)(2.0f), cosine, (floatL)(1.0f)"),
+        Mutant("wide + offset, exponent + offset", "wide, exponent"),
     ],
     "shade/ward.clh": [
         Mutant("fma_lanes(0.5f, shininess, 1.0f)", "fma_lanes(0.5f, shininess, 2.0f)"),
@@ -862,6 +869,7 @@ MUTANTS = {
         Mutant("view->margin, view->height), 0.15f * above)", "view->margin, view->height), above - above)"),
         Mutant("(0xffffffffu >> (2 * kPicks - count)) << first", "(0xffffffffu >> (2 * kPicks - count))"),
         Mutant("if (!(used >> k & 1)) continue;", ""),
+        Mutant("fma_lanes((floatL)(bounds->shine.place.radius), view->inverse_d, (floatL)(0x1p-18f))", "(floatL)(0x1p-18f)"),
         Mutant("(at.node + 1)) >> at.level", "(at.node + 1) - 1) >> at.level"),
         Mutant("picks->light[k] = leaf * kLeafLights + in_leaf + i", "picks->light[k] = leaf * kLeafLights + i"),
         Mutant("of_lights = weight + LEAF_SLOT(leaf) + in_leaf", "of_lights = weight + LEAF_SLOT(leaf)"),
@@ -900,8 +908,15 @@ MUTANTS = {
         Mutant("> -0x1p-13f ? falloff : none", "> -2.0f ? falloff : none"),
         Mutant("color.y * light->diffuse.y * strength", "color.y * light->diffuse.x * strength"),
         Mutant("fma_lanes(color.y * light->specular.y, strength", "fma_lanes(color.y * light->diffuse.y, strength"),
-        Mutant("0.5f * group->exponent", "group->exponent"),
-        Mutant("phong_lobe(u, inverse_d, axis), (floatL)(group->exponent)", "phong_lobe(u, inverse_d, axis), (floatL)(0.5f * group->exponent)"),
+        Mutant("0.5f * exponent", "exponent"),
+        Mutant("phong_lobe(u, inverse_d, axis), exponent", "phong_lobe(u, inverse_d, axis), 0.5f * exponent"),
+        Mutant("power *= kept_energy(exponent, narrow, 1.0f)", "power *= 1.0f"),
+        Mutant("power *= kept_energy(exponent, narrow, 2.0f)", "power *= 1.0f"),
+        Mutant("light->round - dot3(light->axis, u)", "light->round + dot3(light->axis, u)"),
+        Mutant("if (parallel) position.x = position.y = position.z = 0.0f;", ""),
+        Mutant("if (place.w == kNoRay) continue;", ""),
+        Mutant("share += min_lanes(first * first", "share += 0.0f * min_lanes(first * first"),
+        Mutant("square = fma_lanes(first, first, half_width * half_width)", "square = half_width * half_width"),
         Mutant("light->place.z - position.z + light->rest.z", "light->place.z - position.z"),
         Mutant("to[5][lane] = from->rest.z", "to[5][lane] = from->rest.x"),
         Mutant("light[k].color *= weight", ""),
@@ -930,13 +945,13 @@ MUTANTS = {
                same="bright pixels are more precise than asked for, and take more rays"),
         Mutant("max_lanes(allowed - proven, 0.5f * allowed)", "allowed"),
         Mutant("rounding = 0x1p-24f * (float)(LIGHT_ROUNDING", "rounding = 0.0f * (float)(LIGHT_ROUNDING"),
-        Mutant("finite_color(frame->deviations * seen * deviation)", "finite_color(0.5f * frame->deviations * seen * deviation)"),
-        Mutant("finite_color(frame->deviations * seen * deviation)", "finite_color(frame->deviations * deviation)"),
+        Mutant("half_width = frame->deviations * seen * deviation", "half_width = 0.5f * frame->deviations * seen * deviation"),
+        Mutant("half_width = frame->deviations * seen * deviation", "half_width = frame->deviations * deviation"),
         Mutant("finite_color(*(const floatL*)(before->light[c] + j) + *(const floatL*)(sums->light[c] + j))", "finite_color(*(const floatL*)(sums->light[c] + j))"),
-        Mutant("planes->bound[at] = proven[j] + width[j]", "planes->bound[at] = width[j]"),
+        Mutant("planes->bound[at] = proven[j]", "planes->bound[at] = 0.0f"),
         Mutant("planes->half_width[at] = width[j]", "planes->half_width[at] = 0.0f"),
         Mutant("seed = (uint4)(frame->seed, pixel.x", "seed = (uint4)(0u, pixel.x"),
-        Mutant("seed = (uint4)(frame->seed, pixel.x, pixel.y, 0u)", "seed = (uint4)(frame->seed, 0u, 0u, 0u)"),
+        Mutant("seed = (uint4)(frame->seed, pixel.x, pixel.y,", "seed = (uint4)(frame->seed, 0u, 0u,"),
         Mutant("if (reflects && tile->position", "if (tile->position", same="black pixels take no light, and some time"),
     ],
     "exact/wide_integer.h": [

@@ -6,6 +6,8 @@
 #include <glm/glm.hpp>
 #include <utility>
 
+#include "kernels/sampled/sampled_light.h"
+
 namespace luciole {
 namespace {
 
@@ -18,11 +20,14 @@ glm::vec3 colorOf(const Light& light, ColorOf color) { return color ? light.*col
 LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::vector<std::uint32_t>& chosen,
                          ColorOf color) {
   const glm::dmat4 world_to_view = worldToView(camera);
+  const glm::dmat3 rotation(world_to_view);
   std::vector<UnboundedLight> lights(chosen.size());
   tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t i) {
     const Light& light = scene.lights[chosen[i]];
-    lights[i] = {glm::dvec3(world_to_view * glm::dvec4(light.position, 1)), glm::dvec3(colorOf(light, color)),
-                 light.attenuation.z};
+    const bool directional = light.kind == LightKind::kDirectional;
+    lights[i] = {directional ? -(rotation * light.direction)
+                             : glm::dvec3(world_to_view * glm::dvec4(light.position, 1)),
+                 glm::dvec3(colorOf(light, color)), directional ? 1.0 : double(light.attenuation.z)};
   });
   return buildLightClusters(lights);
 }
@@ -42,13 +47,33 @@ ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
   return set;
 }
 
-SampledSet sampledSet(const Scene& scene, const BeamScene& beams, const std::vector<std::uint32_t>& chosen,
+/// shadows: lights that are marked so cast them.
+SampledSet sampledSet(const Scene& scene, const Camera& camera, const BeamScene& beams,
+                      const FeatureSet& features, const std::vector<std::uint32_t>& chosen, bool shadows,
                       ClusterSet of_lights) {
-  SampledSet set{std::move(of_lights), {}};
+  constexpr std::size_t kRowFloats = std::size_t(kLobeFields) * kClusterSlots;
+  SampledSet set{std::move(of_lights), {}, {}, 0};
   const LightClusters& clusters = set.diffuse;
-  set.places.resize(clusters.light_rows.size() / kLightFields);
+  const std::size_t slots = clusters.light_rows.size() / kLightFields;
+  set.places.resize(slots);
+  if (features.has(Feature::kSampledLobes) || features.has(Feature::kWideHighlights))
+    set.lobes.resize(slots / kClusterSlots * kRowFloats);
+  std::fill(set.lobes.begin(), set.lobes.end(), 0.0f);
+  const glm::dmat3 rotation(worldToView(camera));
   forEachSlot(clusters, [&](std::size_t slot, std::size_t i) {
-    set.places[slot] = beamLight(scene.lights[chosen[clusters.order[i]]], true, beams).place;
+    const Light& light = scene.lights[chosen[clusters.order[i]]];
+    set.places[slot] = beamLight(light, true, beams).place;
+    if (!(light.shadow && shadows)) set.places[slot].w = kNoRay;
+    if (set.lobes.empty()) return;
+    float* row = &set.lobes[slot / kClusterSlots * kRowFloats + slot % kClusterSlots];
+    const auto field = [row](std::size_t number) -> float& { return row[number * kClusterSlots]; };
+    const bool is_lobe = light.kind == LightKind::kSpot;
+    const glm::vec3 axis = is_lobe ? glm::vec3(rotation * light.direction) : glm::vec3(0.0f);
+    for (std::size_t k = 0; k < 3; ++k) field(kLobeAxis + k) = axis[int(k)];
+    field(kLobeRound) = is_lobe ? 0.0f : 1.0f;
+    float& cell = field(kLobeCell);
+    cell = light.kind == LightKind::kDirectional ? light.cell : light.cell / light.attenuation.z;
+    set.largest_cell = std::max(set.largest_cell, cell);
   });
   return set;
 }
@@ -57,6 +82,7 @@ SampledSet sampledSet(const Scene& scene, const BeamScene& beams, const std::vec
 
 BoundedLights boundedLights(const Scene& scene, const FeatureSet& features, const ShadeSettings& settings) {
   BoundedLights chosen;
+  chosen.shadows = settings.shadows != ShadowMethod::kOff;
   if (!features.lightError()) return chosen;
   const UseConditions conditions = useConditions(settings);
   std::vector<LightUse> uses(scene.lights.size());
@@ -64,7 +90,10 @@ BoundedLights boundedLights(const Scene& scene, const FeatureSet& features, cons
                     [&](std::size_t i) { uses[i] = lightUse(scene.lights[i], conditions); });
   for (std::uint32_t i = 0; i < uses.size(); ++i)
     if (!isSummed(uses[i], features))
-      (uses[i] == LightUse::kClustered ? chosen.clustered : chosen.sampled).push_back(i);
+      (uses[i] == LightUse::kClustered ? chosen.clustered
+       : uses[i] == LightUse::kSampled ? chosen.sampled
+                                       : chosen.directions)
+          .push_back(i);
   return chosen;
 }
 
@@ -75,9 +104,13 @@ void setBoundedLights(const Scene& scene, const Camera& camera, const BeamScene&
              sampled_highlights = features.has(Feature::kSampledHighlights);
   if (!chosen.clustered.empty() && (colors.diffuse || (colors.specular && highlights)))
     set.clusters = clusterSet(scene, camera, highlights, chosen.clustered, colors);
-  if (!chosen.sampled.empty() && (colors.diffuse || (colors.specular && sampled_highlights)))
-    set.samples = sampledSet(scene, beams, chosen.sampled,
-                             clusterSet(scene, camera, sampled_highlights, chosen.sampled, colors));
+  if (!colors.diffuse && !(colors.specular && sampled_highlights)) return;
+  const auto samplesOf = [&](const std::vector<std::uint32_t>& lights) {
+    return sampledSet(scene, camera, beams, features, lights, chosen.shadows,
+                      clusterSet(scene, camera, sampled_highlights, lights, colors));
+  };
+  if (!chosen.sampled.empty()) set.samples = samplesOf(chosen.sampled);
+  if (!chosen.directions.empty()) set.directions = samplesOf(chosen.directions);
 }
 
 }  // namespace luciole

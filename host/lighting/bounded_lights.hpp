@@ -12,7 +12,8 @@ namespace luciole {
 
 /// Lights that aren't summed by themselves: their indices in the scene, ascending.
 struct BoundedLights {
-  std::vector<std::uint32_t> clustered, sampled;
+  std::vector<std::uint32_t> clustered, sampled, directions;
+  bool shadows = true;  ///< lights that are sampled cast shadows, if they are marked so
 };
 
 /// Those of a picture with these features. O(lights).

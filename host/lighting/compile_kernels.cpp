@@ -129,7 +129,7 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
     lighting.maps.host.bin_count = 1;
   }
   borrowMaps(device, lighting.maps);
-  if (features.has(Feature::kSampledLights)) prepareNoBeams(device, features, settings, lighting.beams);
+  if (features.sampledLight()) prepareNoBeams(device, features, settings, lighting.beams);
   finishLightSet(device, lighting.lights);
   Stats ignored;
   LightPass pass{.lights = lighting.lights,

@@ -69,7 +69,8 @@ void countStandIns(const LitPlanes& lit, Stats& stats) {
 void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lighting& lighting,
                     Stats& stats) {
   if (!(settings.light_error > 0) || !scene.lighting) return;
-  const std::size_t clustered = lighting.lights.clusters.lights, sampled = lighting.lights.samples.lights;
+  const std::size_t clustered = lighting.lights.clusters.lights,
+                    sampled = lighting.lights.samples.lights + lighting.lights.directions.lights;
   addCount(stats, "lights_stood_for", clustered);
   if (sampled > 0) addCount(stats, "lights_sampled", sampled);
   addCount(stats, "lights_exact", scene.lights.size() - clustered - sampled);
@@ -78,7 +79,8 @@ void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lig
     if (counts[use] > 0)
       addCount(stats, std::string("lights_exact_by_") + reasonName(LightUse(use)), counts[use]);
   const std::size_t few = counts[std::size_t(LightUse::kClustered)] +
-                          counts[std::size_t(LightUse::kSampled)] - clustered - sampled;
+                          counts[std::size_t(LightUse::kSampled)] +
+                          counts[std::size_t(LightUse::kSampledDirection)] - clustered - sampled;
   if (few > 0) addCount(stats, "lights_exact_as_few", few);
 }
 

@@ -68,7 +68,7 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(lighting.maps.host.texels.size(), 1));
   if (features.lightError()) {
     bounded = timed(stats, Stage::kClusteredLight, [&] { return sumClusters(input, frame); });
-    if (pass.lights.samples.lights > 0)
+    if (pass.lights.samples.lights + pass.lights.directions.lights > 0)
       timed(stats, Stage::kSampledLight, [&] { sampleLights(input, frame, bounded); });
     points.buffers.emission = borrowed(device, bounded.light);
   }

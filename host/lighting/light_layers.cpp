@@ -101,20 +101,22 @@ std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, co
                                     const ShadeSettings& settings, std::vector<LightLayer> layers) {
   if (layers.empty()) return {};
   const LightSet& lights = lighting.lights;
-  const ChosenLights none;
   ChosenLights all{std::vector<std::uint32_t>(lights.lights.size()),
                    boundedLights(scene, features, settings)};
   std::iota(all.summed.begin(), all.summed.end(), 0u);
-  std::vector<ChosenLights> in_groups(scene.light_groups.size());
+  ChosenLights nothing;
+  nothing.bounded.shadows = all.bounded.shadows;
+  std::vector<ChosenLights> in_groups(scene.light_groups.size(), nothing);
   const auto groupOf = [&](std::uint32_t light) -> ChosenLights& {
     return in_groups[scene.lights[light].group];
   };
   for (const std::uint32_t i : all.summed) groupOf(lights.order[i]).summed.push_back(i);
   for (const std::uint32_t light : all.bounded.clustered) groupOf(light).bounded.clustered.push_back(light);
   for (const std::uint32_t light : all.bounded.sampled) groupOf(light).bounded.sampled.push_back(light);
+  for (const std::uint32_t light : all.bounded.directions) groupOf(light).bounded.directions.push_back(light);
   std::vector<LitLayer> prepared;
   for (LightLayer& layer : layers) {
-    const ChosenLights& chosen = layer.all_lights ? all : layer.group ? in_groups[*layer.group] : none;
+    const ChosenLights& chosen = layer.all_lights ? all : layer.group ? in_groups[*layer.group] : nothing;
     LightSet set = layerLights(device, lights, chosen.summed, layer);
     setBoundedLights(scene, camera, lighting.beams, features, chosen.bounded, {layer.diffuse, layer.specular},
                      set);

@@ -34,7 +34,7 @@ void prepareLightSet(OpenedDevice& device, const Scene& scene, const Camera& cam
     const FeatureSet& features = lighting.features;
     setBoundedLights(scene, camera, lighting.beams, features, boundedLights(scene, features, settings), {},
                      set);
-    if (set.clusters.lights + set.samples.lights < scene.lights.size())
+    if (set.clusters.lights + set.samples.lights + set.directions.lights < scene.lights.size())
       set.order = spatialOrder(scene.lights);
     if (features.lightError())
       std::erase_if(set.order, [&](std::uint32_t light) {

@@ -21,7 +21,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
   if (clusters.lights > 0) {
     const SampleSettings& settings = input.lighting.samples;
     // Samples take what the proof leaves, and most of the time.
-    const float share = features.has(Feature::kSampledLights) ? kProvenShare : 1.0f;
+    const float share = features.sampledLight() ? kProvenShare : 1.0f;
     const Buffer<float> light = borrowedForOutput(input.device, result.light),
                         bound = borrowedForOutput(input.device, result.bound);
     result.cluster_counts = clusteredLight(

@@ -11,7 +11,8 @@
 
 namespace luciole {
 
-/// A point light without range whose attenuation is quadratic·d² alone. View space, metres.
+/// A point light without range whose attenuation is quadratic·d² alone. View space, metres. Of directional
+/// lights, which are sampled, `position` is the unit vector towards them and `quadratic` 1.
 struct UnboundedLight {
   glm::dvec3 position;
   glm::dvec3 color;  ///< its diffuse or its specular one; ≥ 0

@@ -12,11 +12,13 @@ void finishLightSet(OpenedDevice& device, LightSet& set) {
 
 std::size_t bytesOf(const LightSet& set) {
   std::size_t floats = set.tree.planes.size();
-  for (const LightClusters* clusters :
-       {&set.clusters.diffuse, &set.clusters.specular, &set.samples.diffuse, &set.samples.specular})
-    floats += clusters->rows.size() + clusters->light_rows.size();
-  return set.lights.size() * sizeof(ShadeLight) + floats * sizeof(float) +
-         set.samples.places.size() * sizeof(float4);
+  for (const ClusterSet* of :
+       std::initializer_list<const ClusterSet*>{&set.clusters, &set.samples, &set.directions})
+    for (const LightClusters* clusters : {&of->diffuse, &of->specular})
+      floats += clusters->rows.size() + clusters->light_rows.size();
+  for (const SampledSet* samples : {&set.samples, &set.directions})
+    floats += samples->lobes.size() + samples->places.size() * (sizeof(float4) / sizeof(float));
+  return set.lights.size() * sizeof(ShadeLight) + floats * sizeof(float);
 }
 
 }  // namespace luciole

@@ -20,9 +20,14 @@ struct ClusterSet {
   std::size_t lights = 0;  ///< number of lights in the clusters
 };
 
-/// Lights that are sampled, with Feature::kSampledLights only.
+/// Lights that are sampled: with Feature::kSampledLights those with a place, with Feature::kSampledDirections
+/// directional ones, as lights at the unit vectors towards them.
 struct SampledSet : ClusterSet {
-  RawArray<float4> places;  ///< BeamLight::place of each slot of a row of lights
+  /// BeamLight::place of each slot of a row of lights; w: -1 for one that casts no shadow.
+  RawArray<float4> places;
+  /// kLobeFields · kClusterSlots floats for each row of lights; empty where the features need none.
+  RawArray<float> lobes;
+  float largest_cell = 0;  ///< of kLobeCell
 };
 
 /// The lights of a picture or of a layer of light, as kernels take them, with ambient light, fog and
@@ -37,7 +42,7 @@ struct LightSet {
   std::vector<BeamLight> beam_lights;  ///< one for each, with Feature::kExact only
   LightTree tree;
   ClusterSet clusters;
-  SampledSet samples;
+  SampledSet samples, directions;
   Buffer<const ShadeLight> light_buffer;
   Buffer<const float> tree_buffer;
   Buffer<const BeamLight> beam_buffer;

@@ -81,7 +81,8 @@ RawArray<ShadeLight> prepareLights(const Scene& scene, std::span<const std::uint
     out.diffuse = pack(light.diffuse, light.exponent);
     out.specular = pack(light.specular, cone_scale);
     out.ambient = pack(light.ambient, 0);
-    out.attenuation = pack(glm::dvec3(light.attenuation) * glm::dvec3(1, nearer, nearer * nearer), 0);
+    out.attenuation =
+        pack(glm::dvec3(light.attenuation) * glm::dvec3(1, nearer, nearer * nearer), light.cell);
     out.khr_window = light.window == RangeWindow::kKhr;
     out.cone = light.falloff == SpotFalloff::kCone;
     out.shadow = map_of_light.empty() ? kNoShadow : map_of_light[i];

@@ -115,23 +115,30 @@ double orenNayar(const Directions& at, double shininess) {
   return cos_l * (a + b * azimuth * std::sin(alpha) * std::tan(beta));
 }
 
-Reflected reflectedLight(Model model, const Directions& at, const glm::dvec3& specular, double shininess) {
+Reflected reflectedLight(Model model, const Directions& at, const glm::dvec3& specular, double shininess,
+                         double cell) {
   const double cosine = glm::dot(at.normal, at.to_light);
+  // The variance of a lobe in the light's direction, 1/n around the mirrored eye and (2 cos θ)²/n around the
+  // half vector, where θ is the light's angle with that, is half of the cell at least.
+  const double to_half = glm::dot(at.to_light, halfVector(at));
+  const double mirrored = std::min(shininess, 2 / cell),
+               half_way = cell > 0 ? std::min(shininess, 8 * to_half * to_half / cell) : shininess;
+  const double phong = phongLobe(at, mirrored) * ((mirrored + 1) / (shininess + 1));
   switch (model) {
     case Model::kPhong:
-      return {cosine, specular * phongLobe(at, shininess)};
+      return {cosine, specular * phong};
     case Model::kBlinnPhong:
-      return {cosine, specular * blinnLobe(at, shininess)};
+      return {cosine, specular * (blinnLobe(at, half_way) * ((half_way + 2) / (shininess + 2)))};
     case Model::kToon:
-      return {toonTone(cosine), specular * toonHighlight(phongLobe(at, shininess))};
+      return {toonTone(cosine), specular * toonHighlight(phongLobe(at, mirrored))};
     case Model::kCookTorrance:
       return {cosine,
-              {cookTorrance(at, specular.r, shininess), cookTorrance(at, specular.g, shininess),
-               cookTorrance(at, specular.b, shininess)}};
+              {cookTorrance(at, specular.r, half_way), cookTorrance(at, specular.g, half_way),
+               cookTorrance(at, specular.b, half_way)}};
     case Model::kOrenNayar:
-      return {orenNayar(at, shininess), specular * phongLobe(at, shininess)};
+      return {orenNayar(at, shininess), specular * phong};
     case Model::kWard:
-      return {cosine, specular * ward(at, shininess)};
+      return {cosine, specular * ward(at, half_way)};
   }
   throw std::logic_error("a model without a reference");
 }

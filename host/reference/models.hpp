@@ -23,9 +23,11 @@ struct Reflected {
   glm::dvec3 specular{0.0};
 };
 
-/// The reflection of a light that the surface faces, N·L > 0. specular: the surface's colour; shininess: ≥ 0.
+/// The reflection of a light that the surface faces, N·L > 0. specular: the surface's colour; shininess: ≥ 0;
+/// cell: the solid angle, sr, of the part of a source that the light stands for, as the surface sees it: what
+/// is narrower is as wide as that (kernels/shade/wide_lobe.clh), and no brighter in sum.
 Reflected reflectedLight(Model model, const Directions& directions, const glm::dvec3& specular,
-                         double shininess);
+                         double shininess, double cell = 0);
 
 /// The toon model's steps, in [0, 1]: the tone for the cosine N·L, and the highlight for Phong's lobe.
 double toonTone(double cosine);

@@ -166,17 +166,19 @@ static void eachLightTerm(const Scene& scene, const Camera& camera, const Surfac
     const bool behind = glm::dot(point.unbent_normal, incoming.to_light) <= -kPackedNormalMargin;
     const bool faces = term.n_dot_l > 0 && !behind;
     term.visibility = !faces ? 0.0 : light.shadow && visibility ? visibility(light) : 1.0;
+    const double cell = double(light.cell) * incoming.share;
     Reflected by_user;
     if (faces && isUserModel(model)) {
       const glm::dmat3 to_view = glm::transpose(glm::dmat3(camera.camera_to_world));
-      by_user = user.next(model, {to_view * normal, to_view * incoming.to_light, to_view * to_eye,
-                                  to_view * point.tangent, point.diffuse, point.specular, point.shininess});
+      by_user = user.next(
+          model, {to_view * normal, to_view * incoming.to_light, to_view * to_eye, to_view * point.tangent,
+                  point.diffuse, point.specular, std::min(point.shininess, 2 / cell)});
     }
     if (term.visibility > 0) {
-      const auto [diffuse, specular] =
-          isUserModel(model)
-              ? by_user
-              : reflectedLight(model, {normal, incoming.to_light, to_eye}, point.specular, point.shininess);
+      const auto [diffuse, specular] = isUserModel(model)
+                                           ? by_user
+                                           : reflectedLight(model, {normal, incoming.to_light, to_eye},
+                                                            point.specular, point.shininess, cell);
       term.diffuse = glm::dvec3(light.diffuse) * point.diffuse * (diffuse * term.visibility);
       term.specular = glm::dvec3(light.specular) * specular * term.visibility;
     }

@@ -22,8 +22,7 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   const PlaneSet& planes = plan.planes;
   const FeatureSet& features = plan.pixels;
   // Light of clusters adds 3 planes each of light, bounds and their sum; sampled light 3 of half widths.
-  const std::size_t bounded =
-      (features.lightError() ? 9 : 0) + (features.has(Feature::kSampledLights) ? 3 : 0);
+  const std::size_t bounded = (features.lightError() ? 9 : 0) + (features.sampledLight() ? 3 : 0);
   const std::size_t gbuffer = 9 + bounded + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
                               (planes.emission ? 3 : 0) + (planes.geometric_normal ? 1 : 0) +
                               (planes.unbent_normal ? 1 : 0) + (planes.lift ? 1 : 0) +

@@ -63,7 +63,9 @@ std::vector<bool> summedCasters(const Scene& scene, const ShadeSettings& setting
   std::vector<bool> casts(scene.lights.size());
   for (std::size_t i = 0; i < casts.size(); ++i) {
     const Light& light = scene.lights[i];
-    casts[i] = light.shadow && !(stand_ins.sampled && lightUse(light, conditions) == LightUse::kSampled);
+    const LightUse use = lightUse(light, conditions);
+    casts[i] = light.shadow && !(stand_ins.sampled && use == LightUse::kSampled) &&
+               !(stand_ins.directions && use == LightUse::kSampledDirection);
   }
   return casts;
 }

@@ -73,17 +73,19 @@ UseConditions useConditions(const ShadeSettings& settings) {
   return {settings.material_models ? std::nullopt : std::optional(settings.model), settings.shadows};
 }
 
-/// Whether sampling so many lights is estimated to be faster than to sum each, with beams for its shadow.
-static bool samplesAreFaster(const Scene& scene, const View& view, std::size_t lights,
+/// Whether sampling so many lights, all of this use, is estimated to be faster than to sum each, with beams
+/// for its shadow.
+static bool samplesAreFaster(const Scene& scene, const View& view, std::size_t lights, LightUse use,
                              const ShadeSettings& settings) {
   if (lights == 0) return false;
+  const std::size_t casting = countCasting(scene.lights, use, useConditions(settings));
   // Summing a light at a point without its shadow.
   constexpr double kSum = 1.2e-6;
   const double points = double(view.size.x) * view.size.y, triangles = double(countTriangles(scene));
   const double one_by_one =
-      double(lights) *
-      (kSum * points + beamMilliseconds({.points = points, .triangles = triangles}, anyHoles(scene)));
-  return sampledMilliseconds({lights, points, triangles}, settings) < one_by_one;
+      double(lights) * kSum * points +
+      double(casting) * beamMilliseconds({.points = points, .triangles = triangles}, anyHoles(scene));
+  return sampledMilliseconds({lights, casting, points, triangles}, settings) < one_by_one;
 }
 
 StandIns standIns(const Scene& scene, const View& view, SurfaceTraits surfaces,
@@ -91,11 +93,13 @@ StandIns standIns(const Scene& scene, const View& view, SurfaceTraits surfaces,
   if (!scene.lighting || !(settings.light_error > 0)) return {};
   const LightUseCounts counts = countUses(scene.lights, useConditions(settings));
   const std::size_t clustered = counts[std::size_t(LightUse::kClustered)],
-                    sampled = counts[std::size_t(LightUse::kSampled)];
-  StandIns stand_ins{clustered > 0, sampled > 0};
+                    sampled = counts[std::size_t(LightUse::kSampled)],
+                    directions = counts[std::size_t(LightUse::kSampledDirection)];
+  StandIns stand_ins{clustered > 0, sampled > 0, directions > 0};
   if (!settings.always_clusters) {
     stand_ins.clustered = clustersAreFaster({clustered, settings.light_error, surfaces.specular}, view);
-    stand_ins.sampled = samplesAreFaster(scene, view, sampled, settings);
+    stand_ins.sampled = samplesAreFaster(scene, view, sampled, LightUse::kSampled, settings);
+    stand_ins.directions = samplesAreFaster(scene, view, directions, LightUse::kSampledDirection, settings);
   }
   // Clusters know nothing of what stands behind a surface that a bent normal faces.
   stand_ins.clustered &= !surfaces.normal_maps;
@@ -104,7 +108,8 @@ StandIns standIns(const Scene& scene, const View& view, SurfaceTraits surfaces,
 
 bool isSummed(LightUse use, const FeatureSet& features) {
   return !(use == LightUse::kClustered && features.has(Feature::kClusteredLights)) &&
-         !(use == LightUse::kSampled && features.has(Feature::kSampledLights));
+         !(use == LightUse::kSampled && features.has(Feature::kSampledLights)) &&
+         !(use == LightUse::kSampledDirection && features.has(Feature::kSampledDirections));
 }
 
 namespace {
@@ -165,8 +170,10 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
 
   features.set(Feature::kClusteredLights, stand_ins.clustered);
   features.set(Feature::kSampledLights, stand_ins.sampled);
+  features.set(Feature::kSampledDirections, stand_ins.directions);
   const UseConditions conditions = useConditions(settings);
-  bool any_specular = false, clusters_specular = false, samples_specular = false, any_exponent = false;
+  bool any_specular = false, clusters_specular = false, samples_specular = false, any_exponent = false,
+       any_lobe = false, any_cell = false;
   std::size_t summed = 0;  // lights that are summed by themselves
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -175,6 +182,8 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     (summed_alone                  ? any_specular
      : use == LightUse::kClustered ? clusters_specular
                                    : samples_specular) |= light.specular != glm::vec3(0.0f);
+    any_cell |= light.cell > 0;
+    any_lobe |= !summed_alone && light.kind == LightKind::kSpot;
     if (!summed_alone) continue;
     ++summed;
     addLight(light, features);
@@ -187,7 +196,7 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   features.set(Feature::kLightLists, settings.culling == Culling::kTiles && summed > 0);
   features.set(Feature::kLongSums, summed > kSumBlock);
 
-  features.set(Feature::kLift, surfaces.smooth && (features.shadows() || stand_ins.sampled));
+  features.set(Feature::kLift, surfaces.smooth && (features.shadows() || features.sampledLight()));
   features.set(Feature::kNormalMaps, surfaces.normal_maps && !scene.lights.empty());
   features.set(Feature::kHoles, features.triangleTree() && anyHoles(scene));
   features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
@@ -204,6 +213,8 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   // What clusters and samples give a pixel reaches the shading kernels as light that the surface emits.
   features.set(Feature::kClusteredHighlights, surfaces.specular && clusters_specular);
   features.set(Feature::kSampledHighlights, surfaces.specular && samples_specular);
+  features.set(Feature::kSampledLobes, any_lobe);
+  features.set(Feature::kWideHighlights, surfaces.specular && any_cell);
   if (features.lightError()) features.set(Feature::kEmission);
   return features;
 }

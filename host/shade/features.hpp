@@ -54,9 +54,10 @@ class FeatureSet {
   }
   bool shadows() const { return shadowMaps() || has(Feature::kExact); }
   /// Whether shadows are tested by the scene's triangles.
-  bool triangleTree() const { return has(Feature::kExact) || has(Feature::kSampledLights); }
+  bool triangleTree() const { return has(Feature::kExact) || sampledLight(); }
+  bool sampledLight() const { return has(Feature::kSampledLights) || has(Feature::kSampledDirections); }
   /// Whether light comes with bounds of its error.
-  bool lightError() const { return has(Feature::kClusteredLights) || has(Feature::kSampledLights); }
+  bool lightError() const { return has(Feature::kClusteredLights) || sampledLight(); }
   /// Bit i is that of row i of the table.
   std::uint64_t bits() const { return bits_.to_ullong(); }
 
@@ -93,12 +94,13 @@ void chooseModel(const ModelChoices& choices, ShadeSettings& settings);
 /// How a light's shadows are computed in a picture with these settings. light: its index in the scene.
 ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings);
 
-/// Whether a picture lets clusters stand for lights, and samples those that cast shadows.
+/// Whether a picture lets clusters stand for lights, and samples those with a place (LightUse::kSampled) and
+/// directional ones.
 struct StandIns {
-  bool clustered = false, sampled = false;
+  bool clustered = false, sampled = false, directions = false;
 };
 
-/// Both only if the settings allow an error, and there are enough lights of such a use (clustersAreFaster,
+/// Each only if the settings allow an error, and there are enough lights of such a use (clustersAreFaster,
 /// samplesAreFaster). view: of the picture. O(lights).
 StandIns standIns(const Scene& scene, const View& view, SurfaceTraits surfaces,
                   const ShadeSettings& settings);

@@ -57,6 +57,8 @@ SampleFrame sampleFrame(const SampledLightArguments& arguments) {
   frame.seed = settings.seed;
   frame.tiles = arguments.frame.plane_stride / kTilePixels;
   frame.pilot = pilotRays(settings.light_error);
+  frame.parallel = arguments.directions;
+  frame.largest_cell = arguments.lights.largest_cell;
   return frame;
 }
 
@@ -124,6 +126,7 @@ SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines
               {"specular_rows", one_color ? rows : borrowed(device, lights.specular.rows)},
               {"specular_light_rows", one_color ? light_rows : borrowed(device, lights.specular.light_rows)},
               {"places", borrowed(device, lights.places)},
+              {"lobes", borrowed(device, lights.lobes)},
               {"strata", strata},
               {"heap", heap},
               {"order", order},
@@ -159,7 +162,8 @@ double sampledRays(std::size_t lights, const ShadeSettings& settings) {
 }
 
 double sampledMilliseconds(const SampleableLights& lights, const ShadeSettings& settings) {
-  const double of_ray = 1e-6 * (6 + 7 * std::log2(std::max(lights.triangles, 2.0))),
+  const double casting = double(lights.casting) / double(std::max<std::size_t>(lights.count, 1)),
+               of_ray = 1e-6 * (6 + 7 * casting * std::log2(std::max(lights.triangles, 2.0))),
                of_tree = 1.2e-3 * double(lights.count);
   return of_tree + lights.points * sampledRays(lights.count, settings) * of_ray;
 }

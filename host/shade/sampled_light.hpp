@@ -33,13 +33,13 @@ struct SampledLightArguments {
   const ShadeFrame& frame;
   const GBufferBuffers& gbuffer;
   const SampledSet& lights;
+  bool directions;  ///< the lights are directional
   const BeamScene& beams;
   const SampleSettings& settings;
   bool holes;  ///< with Feature::kHoles
-  /// Planes r g b of what surfaces reflect, and of proven errors, seen through the fog: of other lights. What
-  /// is sampled is added.
-  Buffer<float> light, bound;
-  Buffer<float> half_width;  ///< out: planes r g b, the part of `bound` that isn't proven
+  /// Planes r g b of what surfaces reflect, of proven errors, and of half widths that aren't proven, both as
+  /// seen through the fog: of other lights. What is sampled is added.
+  Buffer<float> light, bound, half_width;
 };
 
 /// The counts of sampledLight().
@@ -57,9 +57,9 @@ SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines
 
 /// Lights that could be sampled, in a picture.
 struct SampleableLights {
-  std::size_t count;
-  double points;     ///< shaded points of the picture
-  double triangles;  ///< of the scene
+  std::size_t count, casting;  ///< the lights, and those of them that cast shadows
+  double points;               ///< shaded points of the picture
+  double triangles;            ///< of the scene
 };
 
 /// The estimated rays that sampling traces for a point.

@@ -1,4 +1,5 @@
-// The light of point lights without range that cast shadows, sampled, with an interval for each pixel.
+// The light of point lights and cosine lobes without range, or of directional lights, sampled, with an
+// interval for each pixel.
 //
 // A group of pixels, near each other and facing about the same way, cuts the tree of light clusters into
 // strata. Of each stratum a pixel asks two lights whether it sees them, by rays: one of each half of the
@@ -51,6 +52,8 @@
 enum { kMostRounds = 30 };
 // From one seed of a group to the next.
 #define RENEWED_SEED 0x5bd1e995u
+// What tells the seeds of directional lights from those of others.
+#define DIRECTIONS_SEED 0x68e31da4u
 // What a sampled light gives counts as this at most: squares of sums are finite floats.
 #define MOST_SAMPLE 1e17f
 // And what a light gives that is summed: what a float nearly holds.
@@ -102,17 +105,24 @@ SHARED_WORK void trace_queue(const Sampling* sampling, RayQueue* queue, const Cu
 typedef struct {
   vec3L place, rest, diffuse, specular;  // colours times 1/(2p)
   floatL falloff;
+  vec3L axis;          // with LOBE_ROWS: see kLobeFields
+  floatL round, cell;  //
 } LaneLights;
 
 // What lights give a row of a group's pixels if nothing is between, r g b.
 INLINE vec3L unshadowed_light(const SampleFrame* frame, const SampledGroup* group, uint first,
                               const LaneLights* light) {
   vec3L position = group_vector(group, kPosition, first), normal = group_vector(group, kNormal, first);
+  bool parallel = SAMPLED_DIRECTIONS && frame->parallel;
+  if (parallel) position.x = position.y = position.z = 0.0f;
   vec3L u = {light->place.x - position.x + light->rest.x, light->place.y - position.y + light->rest.y,
              light->place.z - position.z + light->rest.z};
   floatL inverse_d = rsqrt_lanes(dot3(u, u)), none = 0.0f;
+  if (parallel) inverse_d = 1.0f;
   floatL n_dot_l = dot3(normal, u) * inverse_d;
   floatL falloff = min_lanes(inverse_d * inverse_d, light->falloff);
+  if (SAMPLED_LOBES) falloff *= max_lanes(light->round - dot3(light->axis, u) * inverse_d, none);
+  floatL seen_cell = light->cell * falloff;
   falloff = n_dot_l > none ? falloff : none;
   if (NORMAL_MAPS)  // as before_surface() in shading.clh has it
     falloff = dot3(group_vector(group, kSurfaceNormal, first), u) * inverse_d > -0x1p-13f ? falloff : none;
@@ -123,13 +133,18 @@ INLINE vec3L unshadowed_light(const SampleFrame* frame, const SampledGroup* grou
   if (SAMPLED_HIGHLIGHTS) {
     vec3L axis = group_vector(group, kAxis, first);
     uint model = frame->shade.model;
-    floatL power;
-    if (MODEL_IS(kBlinnPhongModel))
+    floatL power, exponent = group->exponent, narrow = exponent;
+    if (MODEL_IS(kBlinnPhongModel)) {
+      if (WIDE_HIGHLIGHTS) exponent = wide_exponent(narrow, half_way2(dot3(u, axis) * inverse_d), seen_cell);
       power = pow_one_plus(
           blinn_lobe(u, inverse_d, axis, normal, n_dot_l, group_field(group, kNormalDotEye, first)),
-          (floatL)(0.5f * group->exponent));
-    else
-      power = pow_one_plus(phong_lobe(u, inverse_d, axis), (floatL)(group->exponent));
+          0.5f * exponent);
+      if (WIDE_HIGHLIGHTS) power *= kept_energy(exponent, narrow, 2.0f);
+    } else {
+      if (WIDE_HIGHLIGHTS) exponent = wide_exponent(narrow, (floatL)(1.0f), seen_cell);
+      power = pow_one_plus(phong_lobe(u, inverse_d, axis), exponent);
+      if (WIDE_HIGHLIGHTS) power *= kept_energy(exponent, narrow, 1.0f);
+    }
     strength = power * falloff;
     color = group_vector(group, kSpecular, first);
     value.x = fma_lanes(color.x * light->specular.x, strength, value.x);
@@ -146,6 +161,7 @@ INLINE float sample_half(const Sampling* sampling, const SampledGroup* group, co
                          uint turn, uint values, float most, Cut* cut, RayQueue* queue) {
   ClusteredLight light[kPicks];
   float4 specular[SAMPLED_HIGHLIGHTS ? kPicks : 1];
+  float lobe[LOBE_ROWS ? kPicks : 1][kLobeFields];
   for (uint k = 0; k < kPicks; ++k) {
     uint picked = picks->light[side * kPicks + k], number = picked == kNoPick ? 0 : picked;
     float weight = picked == kNoPick ? 0.0f : picks->weight[side * kPicks + k];
@@ -161,13 +177,18 @@ INLINE float sample_half(const Sampling* sampling, const SampledGroup* group, co
                              f[(kLightColor + 2) * kClusterSlots], 0.0f) *
                     weight;
     }
+    if (LOBE_ROWS)
+      for (uint field = 0; field < kLobeFields; ++field)
+        lobe[LOBE_ROWS ? k : 0][field] =
+            sampling->trees.lobes[(size_t)(number / kClusterSlots) * (kLobeFields * kClusterSlots) +
+                                  field * kClusterSlots + number % kClusterSlots];
   }
   float given[kSampledPixels] ALIGNED;
   clear_pixels(given);
   if (HOLES) cut->unsure[2 * values + side] = 0;
   uint first_value = values * kStratumValues + side * 3 * kSampledPixels;
   for (uint i = 0; i < group->count; i += LANES) {
-    float to[13][LANES] ALIGNED;
+    float to[13 + (LOBE_ROWS ? kLobeFields : 0)][LANES] ALIGNED;
     for (uint lane = 0; lane < LANES; ++lane) {
       uint k = i + lane < group->count ? group->pick[i + lane] ^ turn : 0;
       const ClusteredLight* from = light + k;
@@ -186,17 +207,30 @@ INLINE float sample_half(const Sampling* sampling, const SampledGroup* group, co
         to[11][lane] = specular[k].y;
         to[12][lane] = specular[k].z;
       }
+      if (LOBE_ROWS)
+        for (uint field = 0; field < kLobeFields; ++field)
+          to[LOBE_ROWS ? 13 + field : 0][lane] = lobe[LOBE_ROWS ? k : 0][field];
     }
 #define LANES_OF(n) (*(const floatL*)to[n])
     LaneLights lights = {{LANES_OF(0), LANES_OF(1), LANES_OF(2)},
                          {LANES_OF(3), LANES_OF(4), LANES_OF(5)},
                          {LANES_OF(6), LANES_OF(7), LANES_OF(8)},
                          {0, 0, 0},
-                         LANES_OF(9)};
+                         LANES_OF(9),
+                         {0, 0, 0},
+                         0,
+                         0};
     if (SAMPLED_HIGHLIGHTS) {
       lights.specular.x = LANES_OF(10);
       lights.specular.y = LANES_OF(11);
       lights.specular.z = LANES_OF(12);
+    }
+    if (LOBE_ROWS) {
+      lights.axis.x = LANES_OF(LOBE_ROWS ? 13 + kLobeAxis : 0);
+      lights.axis.y = LANES_OF(LOBE_ROWS ? 14 + kLobeAxis : 0);
+      lights.axis.z = LANES_OF(LOBE_ROWS ? 15 + kLobeAxis : 0);
+      lights.round = LANES_OF(LOBE_ROWS ? 13 + kLobeRound : 0);
+      lights.cell = LANES_OF(LOBE_ROWS ? 13 + kLobeCell : 0);
     }
     vec3L given_row = unshadowed_light(sampling->frame, group, i, &lights);
     floatL channel[3] = {given_row.x, given_row.y, given_row.z};
@@ -210,8 +244,10 @@ INLINE float sample_half(const Sampling* sampling, const SampledGroup* group, co
     }
     *(floatL*)(given + i) = largest;
     for (uint bits = lane_bits(largest > 0.0f); bits; bits &= bits - 1) {
-      uint lane = lowest_bit(bits), n = queue->count++;
+      uint lane = lowest_bit(bits);
       float4 place = sampling->places[picks->light[side * kPicks + (group->pick[i + lane] ^ turn)]];
+      if (place.w == kNoRay) continue;
+      uint n = queue->count++;
       UNROLLED(axis, 3) queue->rays.start[axis][n] = group->field[kStart + axis][i + lane];
       queue->rays.place[0][n] = place.x;
       queue->rays.place[1][n] = place.y;
@@ -352,22 +388,36 @@ INLINE void sum_strata(const SampledGroup* group, const Cut* cut, GroupLight* su
                                                   *(const floatL*)(sums->proven[c] + j));
 }
 
-// Light and proven error of a group's pixels that other lights gave before, as the tile's planes have them:
-// bounds as seen through the fog; and the share of light that the fog lets through. r g b.
+// The planes that are written, r g b each, from a tile's first pixel on.
+typedef struct {
+  __global float *light, *bound, *half_width;
+} SampledPlanes;
+
+// Light, proven error and half width of a group's pixels that other lights gave before, as the tile's planes
+// have them: errors as seen through the fog; and the share of light that the fog lets through. r g b.
 typedef struct {
   float light[3][kSampledPixels] ALIGNED;
   float bound[3][kSampledPixels] ALIGNED;
+  float half_width[SAMPLED_DIRECTIONS ? 3 : 1][kSampledPixels] ALIGNED;  // with SAMPLED_DIRECTIONS
   float seen[FOG ? 3 : 1][kSampledPixels] ALIGNED;
 } BeforeLight;
 
+// What a launch for other lights gave a channel of pixels: see SAMPLED_DIRECTIONS in judge().
+INLINE floatL width_before(const BeforeLight* before, uint c, uint j) {
+  return *(const floatL*)(before->half_width[SAMPLED_DIRECTIONS ? c : 0] + j);
+}
+
 INLINE void load_before(const SampleFrame* frame, const SampledGroup* group, uint stride,
-                        __global const float* light, __global const float* bound, BeforeLight* before) {
+                        const SampledPlanes* planes, BeforeLight* before) {
   for (uint c = 0; c < 3; ++c) {
     clear_pixels(before->light[c]);
     clear_pixels(before->bound[c]);
+    if (SAMPLED_DIRECTIONS) clear_pixels(before->half_width[SAMPLED_DIRECTIONS ? c : 0]);
     for (uint j = 0; j < group->count; ++j) {
-      before->light[c][j] = light[group->place[j] + c * stride];
-      before->bound[c][j] = bound[group->place[j] + c * stride];
+      uint at = group->place[j] + c * stride;
+      before->light[c][j] = planes->light[at];
+      before->bound[c][j] = planes->bound[at];
+      if (SAMPLED_DIRECTIONS) before->half_width[SAMPLED_DIRECTIONS ? c : 0][j] = planes->half_width[at];
     }
   }
   if (!FOG) return;
@@ -385,6 +435,13 @@ INLINE floatL seen_share(const BeforeLight* before, uint c, uint j) {
 
 // Makes of each pixel's own variance an estimate from its group's, too. Returns the mean square of the half
 // width as a share of the one allowed, of the worst channel.
+//
+// With SAMPLED_DIRECTIONS lights with a place are sampled first, then directional ones. Their errors have
+// random numbers of their own, so they are independent, and the variance of their sum is the sum of both. So
+// its deviation times as many as each half width has is √(w₁² + w₂²). The half width of Student's
+// distribution holds for such a sum with at least the same probability (R. Mickey and M. Brown, "Bounds on
+// the Distribution Functions of the Behrens-Fisher Statistic", 1966). The first takes half of the square at
+// most.
 INLINE float judge(const SampleFrame* frame, const SampledGroup* group, const BeforeLight* before,
                    uint strata, GroupLight* sums) {
   float worst = 0.0f, own = OWN_PAIRS * (float)strata, count = (float)group->count;
@@ -408,6 +465,10 @@ INLINE float judge(const SampleFrame* frame, const SampledGroup* group, const Be
       floatL room = max_lanes(allowed - proven, 0.5f * allowed);
       floatL share = quotient_lanes(frame->deviations * seen, room);
       share = share * share * variance;
+      if (SAMPLED_DIRECTIONS) {
+        floatL first = quotient_lanes(width_before(before, c, j), room);
+        share += min_lanes(first * first, (floatL)(0.5f));
+      }
       *(floatL*)(shares + j) = LANE_NUMBERS + (int)j < (int)group->count ? share : (floatL)(0.0f);
     }
     worst = greater(worst, quotient(sum_of_pixels(shares), count));
@@ -473,11 +534,6 @@ INLINE void light_sampled_group(const Sampling* sampling, const SampledGroup* gr
 
 // --- tiles ---
 
-// The planes that are written, r g b each, from a tile's first pixel on.
-typedef struct {
-  __global float *light, *bound, *half_width;
-} SampledPlanes;
-
 INLINE void store_group(const SampleFrame* frame, const SampledGroup* group, const BeforeLight* before,
                         const GroupLight* sums, uint stride, const SampledPlanes* planes) {
   for (uint c = 0; c < 3; ++c) {
@@ -490,12 +546,17 @@ INLINE void store_group(const SampleFrame* frame, const SampledGroup* group, con
           finite_color(*(const floatL*)(before->light[c] + j) + *(const floatL*)(sums->light[c] + j));
       *(floatL*)(proven + j) = finite_color(
           fma_lanes(seen, *(const floatL*)(sums->proven[c] + j), *(const floatL*)(before->bound[c] + j)));
-      *(floatL*)(width + j) = finite_color(frame->deviations * seen * deviation);
+      floatL half_width = frame->deviations * seen * deviation;
+      if (SAMPLED_DIRECTIONS) {
+        floatL first = width_before(before, c, j), square = fma_lanes(first, first, half_width * half_width);
+        half_width = square * rsqrt_lanes(max_lanes(square, (floatL)(1e-36f)));
+      }
+      *(floatL*)(width + j) = finite_color(half_width);
     }
     for (uint j = 0; j < group->count; ++j) {
       uint at = group->place[j] + c * stride;
       planes->light[at] = light[j];
-      planes->bound[at] = proven[j] + width[j];
+      planes->bound[at] = proven[j];
       planes->half_width[at] = width[j];
     }
   }
@@ -521,11 +582,12 @@ INLINE void light_sampled_tile(const Sampling* sampling, const SampledTile* tile
       GroupLight sums;
       BeforeLight before;
       take_group(frame, tile, first, &left, &group);
-      load_before(frame, &group, tile->stride, planes->light, planes->bound, &before);
+      load_before(frame, &group, tile->stride, planes, &before);
       float position[3] = {group.field[kPosition][0], group.field[kPosition + 1][0],
                            group.field[kPosition + 2][0]};
       uint2 pixel = pixel_of(frame, position);
-      uint4 seed = (uint4)(frame->seed, pixel.x, pixel.y, 0u);
+      uint4 seed = (uint4)(frame->seed, pixel.x, pixel.y,
+                           SAMPLED_DIRECTIONS && frame->parallel ? DIRECTIONS_SEED : 0u);
       light_sampled_group(sampling, &group, &before, seed, cut, queue, &sums, counts);
       store_group(frame, &group, &before, &sums, tile->stride, planes);
     }
@@ -553,28 +615,35 @@ WORK void light_tiles(const Sampling* sampling, SampledTile tile, Cut* cut, Samp
 }
 
 // rows … specular_light_rows: of the trees of clusters by diffuse and by specular colours. places: of their
-// lights, kClusterSlots a row of lights. nodes … first_hole_triangle: of the tree over the triangles. strata
-// … unsure: room for kMostStrata of each work-item.
-// - light, bound, half_width: planes r g b of what the pixels reflect and of errors, seen through the fog.
-//   What is sampled is added to `light` and `bound`, which hold that of other lights. half_width: the part of
-//   `bound` that holds with the confidence asked for; the rest is proven.
+// lights, kClusterSlots a row of lights (BeamLight::place; w: kNoRay for those that cast no shadow). lobes:
+// rows of kLobeFields. nodes … first_hole_triangle: of the tree over the triangles. strata … unsure: room for
+// kMostStrata of each work-item.
+// - light, bound, half_width: planes r g b of what the pixels reflect, of proven errors, and of half widths
+// that
+//   hold with the confidence asked for, both seen through the fog. They hold those of other lights, to which
+//   what is sampled is added.
 // - counts: kSampleCounts for each tile.
 // A work-item takes tile after tile from `next_tile`, which is 0 at first.
-KERNEL void sampled_light(
-    SampleFrame frame, __global const float* position, __global const float* normal,
-    __global const float* diffuse, __global const float* specular, __global const float* lift,
-    __global const uint* surface_normal, __global const float* rows, __global const float* light_rows,
-    __global const float* specular_rows, __global const float* specular_light_rows,
-    __global const float4* places, __global const float* nodes, __global const int* children,
-    __global const float* blocks, __global const uint* block_bits, __global const uchar* hole_texels,
-    __global const HoleTriangle* hole_triangles, __global const uint* first_hole_triangle,
-    __global Stratum* strata, __global uint* heap, __global uint* order, __global uint* free_values,
-    __global float* values, __global ulong* unsure, __global float* light, __global float* bound,
-    __global float* half_width, __global uint* counts, volatile __global uint* next_tile) {
+KERNEL void sampled_light(SampleFrame frame, __global const float* position, __global const float* normal,
+                          __global const float* diffuse, __global const float* specular,
+                          __global const float* lift, __global const uint* surface_normal,
+                          __global const float* rows, __global const float* light_rows,
+                          __global const float* specular_rows, __global const float* specular_light_rows,
+                          __global const float4* places, __global const float* lobes,
+                          __global const float* nodes, __global const int* children,
+                          __global const float* blocks, __global const uint* block_bits,
+                          __global const uchar* hole_texels, __global const HoleTriangle* hole_triangles,
+                          __global const uint* first_hole_triangle, __global Stratum* strata,
+                          __global uint* heap, __global uint* order, __global uint* free_values,
+                          __global float* values, __global ulong* unsure, __global float* light,
+                          __global float* bound, __global float* half_width, __global uint* counts,
+                          volatile __global uint* next_tile) {
   float4 size = frame.tree_most;
   Sampling sampling = {&frame,
                        {{rows, light_rows, frame.light_count, frame.levels},
-                        {specular_rows, specular_light_rows, frame.light_count, frame.levels}},
+                        {specular_rows, specular_light_rows, frame.light_count, frame.levels},
+                        lobes,
+                        frame.largest_cell},
                        places,
                        {nodes,
                         children,

@@ -18,6 +18,19 @@ enum { kPicks = 16, kSampledPixels = 64 };
 // Strata of a group, at most.
 enum { kMostStrata = 4096 };
 
+// Fields of a sampled light beside those of its row (kLightFields), kClusterSlots floats each, in rows as
+// these.
+enum {
+  kLobeAxis = 0,   // 3: xyz unit, view space: the way it shines; 0: all ways
+  kLobeRound = 3,  // it gives max(0, this − axis·L) of its colour: 1 for one that shines all ways, else 0
+  kLobeCell = 4,   // what a surface sees of its cell is this times its falloff: Light::cell over quadratic
+                   // attenuation
+  kLobeFields
+};
+
+// In the place of BeamLight::place.w: the light casts no shadow.
+#define kNoRay (-1.0f)
+
 // Lights of a group of which a pixel asks two whether it sees them: a node of the tree of clusters.
 typedef struct {
   uint level, node;  // below the leaves, too, nodes of a level share the lights evenly
@@ -61,9 +74,10 @@ typedef struct {
   float least_value;
   float deviations;  // the half width in standard deviations
   uint seed;
-  uint tiles;  // of the G-buffer
-  uint pilot;  // rays a pixel that a group begins with
-  uint pad0, pad1;
+  uint tiles;          // of the G-buffer
+  uint pilot;          // rays a pixel that a group begins with
+  uint parallel;       // 1: the lights are directional, at unit vectors from the origin
+  float largest_cell;  // of kLobeCell
 } SampleFrame;
 SHARED_SIZE(SampleFrame, 240);
 

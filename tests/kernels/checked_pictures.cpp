@@ -211,7 +211,15 @@ bool lightBySamples(int lanes) {
     Light light{.attenuation = {0, 0, 1}};
     light.diffuse = light.specular = 0.1 * random.color();
     light.position = camera.camera_to_world * glm::dvec4(10.0 * random.direction(), 1);
-    light.shadow = true;
+    light.shadow = i % 3 > 0;
+    light.cell = 0.01f;
+    if (i % 2 == 0) light.kind = LightKind::kDirectional;
+    light.direction = random.direction();
+    if (i % 4 == 1) {
+      light.kind = LightKind::kSpot;
+      light.cutoff = glm::radians(90.0);
+      light.exponent = 1;
+    }
     scene.lights.push_back(light);
   }
   ShadeSettings settings;
@@ -221,8 +229,8 @@ bool lightBySamples(int lanes) {
   // Each point is a group by itself.
   const GBuffer gbuffer = randomGBuffer(camera, 4, 1, 0, random);
   const View view = cameraView(camera, {4, 1});
-  const FeatureSet features =
-      neededFeatures(scene, camera, {.specular = true, .emission = true}, settings, {.sampled = true});
+  const FeatureSet features = neededFeatures(scene, camera, {.specular = true, .emission = true}, settings,
+                                             {.sampled = true, .directions = true});
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);

@@ -32,10 +32,10 @@ INLINE GroupBounds bounds_of(__global const float* in, uint stride, uint i) {
   return bounds;
 }
 
-INLINE LightTrees trees_of(__global const float* rows, __global const float* light_rows, uint lights,
-                           uint levels) {
+INLINE LightTrees trees_of(__global const float* rows, __global const float* light_rows,
+                           __global const float* lobes, uint lights, uint levels) {
   ClusterTree tree = {rows, light_rows, lights, levels};
-  LightTrees trees = {tree, tree};
+  LightTrees trees = {tree, tree, lobes, 0.0f};
   return trees;
 }
 
@@ -43,9 +43,9 @@ INLINE LightTrees trees_of(__global const float* rows, __global const float* lig
 // bits, the low ones first. out: the light of each pick, -1 without one; the weight of each.
 __kernel void probe_picks(__global const float* in, __global float* out, uint stride,
                           __global const float* rows, __global const float* light_rows,
-                          __global const uint* size) {
+                          __global const float* lobes, __global const uint* size) {
   uint first = work_item() * LANES;
-  LightTrees trees = trees_of(rows, light_rows, size[0], size[1]);
+  LightTrees trees = trees_of(rows, light_rows, lobes, size[0], size[1]);
   for (uint i = first; i < first + LANES; ++i) {
     GroupBounds bounds = bounds_of(in, stride, i);
     __global const float* of_case = in + kBoundColumns * stride + i;
@@ -67,9 +67,9 @@ __kernel void probe_picks(__global const float* in, __global float* out, uint st
 // numbers of strata, of the heap and of the order, and the cost.
 __kernel void probe_cut(__global const float* in, __global float* out, uint stride,
                         __global const float* rows, __global const float* light_rows,
-                        __global const uint* size, __global const uint* halves) {
+                        __global const float* lobes, __global const uint* size, __global const uint* halves) {
   if (work_item() > 0) return;
-  LightTrees trees = trees_of(rows, light_rows, size[0], size[1]);
+  LightTrees trees = trees_of(rows, light_rows, lobes, size[0], size[1]);
   GroupBounds bounds = bounds_of(in, stride, 0);
   __global uint* places = (__global uint*)(out + kMostStrata * (sizeof(Stratum) / sizeof(float)));
   Cut cut = {(__global Stratum*)out,

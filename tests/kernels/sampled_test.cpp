@@ -20,16 +20,17 @@ namespace {
 struct SampledTree {
   std::vector<UnboundedLight> lights;   ///< in the tree's order
   std::vector<std::size_t> slot_light;  ///< the light in a slot, or lights.size()
-  std::vector<float> rows, light_rows;
-  std::vector<uint> size;  ///< the number of lights, and of levels
+  std::vector<float> rows, light_rows, lobes;
+  std::vector<glm::dvec3> axis;  ///< of each of `lights`: the way it shines, or 0
+  std::vector<uint> size;        ///< the number of lights, and of levels
   unsigned levels() const { return size[1]; }
   std::size_t begin(unsigned level, std::size_t node) const {
     return clusterBegin(lights.size(), level, node);
   }
 };
 
-/// decades: how far apart intensities are, at most.
-SampledTree sampledTree(std::size_t count, double decades, Random& random) {
+/// decades: how far apart intensities are, at most. with_lobes: half of the lights are cosine lobes.
+SampledTree sampledTree(std::size_t count, double decades, Random& random, bool with_lobes = false) {
   std::vector<UnboundedLight> lights;
   for (std::size_t i = 0; i < count; ++i)
     lights.push_back({{random.between(-4, 4), random.between(-4, 4), random.between(-1, 5)},
@@ -39,7 +40,15 @@ SampledTree sampledTree(std::size_t count, double decades, Random& random) {
   SampledTree tree;
   for (const std::uint32_t light : clusters.order) tree.lights.push_back(lights[light]);
   tree.slot_light.assign(kLeafLights << clusters.levels, count);
-  forEachSlot(clusters, [&](std::size_t slot, std::size_t i) { tree.slot_light[slot] = i; });
+  tree.axis.resize(count);
+  tree.lobes.resize(clusters.light_rows.size() / kLightFields * kLobeFields);
+  forEachSlot(clusters, [&](std::size_t slot, std::size_t i) {
+    tree.slot_light[slot] = i;
+    if (with_lobes && random.chance(0.5)) tree.axis[i] = random.direction();
+    float* lobe = &tree.lobes[slot / kClusterSlots * kLobeFields * kClusterSlots + slot % kClusterSlots];
+    for (int k = 0; k < 3; ++k) lobe[std::size_t(k) * kClusterSlots] = float(tree.axis[i][k]);
+    lobe[std::size_t(kLobeRound) * kClusterSlots] = tree.axis[i] == glm::dvec3(0.0) ? 1.0f : 0.0f;
+  });
   tree.rows.assign(clusters.rows.begin(), clusters.rows.end());
   tree.light_rows.assign(clusters.light_rows.begin(), clusters.light_rows.end());
   tree.size = {uint(count), clusters.levels};
@@ -85,9 +94,9 @@ std::vector<PickedLights> probePicks(int lanes, const SampledTree& tree, const s
     in.resize(of_case.size());
     for (std::size_t column = 0; column < in.size(); ++column) in[column].push_back(of_case[column]);
   }
-  const std::vector<Column> out =
-      probe(deviceWithLanes(lanes), "sampled_probe.cl", "probe_picks", in, 4 * kPicks,
-            {{"rows", tree.rows}, {"light_rows", tree.light_rows}, {"size", tree.size}});
+  const std::vector<Column> out = probe(
+      deviceWithLanes(lanes), "sampled_probe.cl", "probe_picks", in, 4 * kPicks,
+      {{"rows", tree.rows}, {"light_rows", tree.light_rows}, {"lobes", tree.lobes}, {"size", tree.size}});
   std::vector<PickedLights> picked(cases.size());
   for (std::size_t i = 0; i < cases.size(); ++i)
     for (std::size_t k = 0; k < 2 * kPicks; ++k) {
@@ -224,12 +233,15 @@ GroupPixel randomPixel(const ProbedGroup& group, Random& random) {
   return pixel;
 }
 
-/// Whether any of some pixels sees a light above it.
-bool isAboveAPixel(const ProbedGroup& group, const UnboundedLight& light, Random& random) {
+/// Whether any of some pixels sees a light above it, which shines along an axis, or with 0 all ways.
+bool isAboveAPixel(const ProbedGroup& group, const UnboundedLight& light, Random& random,
+                   const glm::dvec3& axis = glm::dvec3(0.0)) {
   for (int i = 0; i < 100; ++i) {
     const GroupPixel pixel = randomPixel(group, random);
     const glm::dvec3 way = light.position - pixel.position;
-    if (glm::dot(way, pixel.normal) > 1e-5 * glm::length(way)) return true;
+    const double least = 1e-5 * glm::length(way);
+    const bool shines_there = axis == glm::dvec3(0.0) || -glm::dot(way, axis) > least;
+    if (glm::dot(way, pixel.normal) > least && shines_there) return true;
   }
   return false;
 }
@@ -237,7 +249,7 @@ bool isAboveAPixel(const ProbedGroup& group, const UnboundedLight& light, Random
 // Else what it gives is missed by every seed.
 TEST(SampledKernels, EachLightThatAPixelOfTheGroupMaySeeCanBePicked) {
   Random random(4);
-  const SampledTree tree = sampledTree(300, 3, random);
+  const SampledTree tree = sampledTree(300, 3, random, true);
   const unsigned single = tree.levels() + 3;
   std::vector<PickCase> cases;
   for (std::size_t node = 0; node < std::size_t(1) << single; ++node)
@@ -251,7 +263,7 @@ TEST(SampledKernels, EachLightThatAPixelOfTheGroupMaySeeCanBePicked) {
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const std::size_t light = tree.begin(single, cases[i].node);
       (picked[i].light[0] == light ? seen : unseen) += 1;
-      if (!isAboveAPixel(cases[i].group, tree.lights[light], random)) continue;
+      if (!isAboveAPixel(cases[i].group, tree.lights[light], random, tree.axis[light])) continue;
       for (std::size_t k = 0; k < 2 * kPicks; ++k) {
         ASSERT_EQ(picked[i].light[k], light) << "height " << tree.lights[light].position.z;
         ASSERT_EQ(picked[i].weight[k], 0.5f) << "the only light of its stratum is sure";
@@ -314,9 +326,13 @@ ProbedCut probeCut(int lanes, const SampledTree& tree, const ProbedGroup& group,
   std::vector<Column> in;
   for (const float value : group.columns()) in.push_back(Column(kCases, value));
   const std::vector<uint> asked{halves};
-  const std::vector<Column> out = probe(
-      deviceWithLanes(lanes), "sampled_probe.cl", "probe_cut", in, (kPlaces + 3) * kMostStrata / kCases + 1,
-      {{"rows", tree.rows}, {"light_rows", tree.light_rows}, {"size", tree.size}, {"halves", asked}});
+  const std::vector<Column> out = probe(deviceWithLanes(lanes), "sampled_probe.cl", "probe_cut", in,
+                                        (kPlaces + 3) * kMostStrata / kCases + 1,
+                                        {{"rows", tree.rows},
+                                         {"light_rows", tree.light_rows},
+                                         {"lobes", tree.lobes},
+                                         {"size", tree.size},
+                                         {"halves", asked}});
   std::vector<float> flat;
   for (const Column& column : out) flat.insert(flat.end(), column.begin(), column.end());
   const float* places = flat.data() + kPlaces * kMostStrata;

@@ -24,7 +24,6 @@ TEST(LightUse, TellsWhyALightIsSummed) {
   EXPECT_EQ(lightUse(everywhere(), {Model::kToon, ShadowMethod::kHard}), LightUse::kByModel);
   for (const Model model : {Model::kCookTorrance, Model::kWard})
     EXPECT_EQ(lightUse(everywhere(), {model, ShadowMethod::kHard}), LightUse::kByModel);
-  EXPECT_EQ(reasonOf([](Light& light) { light.kind = LightKind::kDirectional; }), LightUse::kByKind);
   EXPECT_EQ(reasonOf([](Light& light) { light.kind = LightKind::kSpot; }), LightUse::kByKind);
   EXPECT_EQ(reasonOf([](Light& light) { light.range = 1e30f; }), LightUse::kByRange);
   EXPECT_EQ(reasonOf([](Light& light) { light.attenuation = {1e-30f, 0, 1}; }), LightUse::kByAttenuation);
@@ -33,6 +32,61 @@ TEST(LightUse, TellsWhyALightIsSummed) {
   EXPECT_EQ(reasonOf([](Light& light) { light.ambient.z = 1e-30f; }), LightUse::kByAmbient);
   EXPECT_EQ(reasonOf([](Light& light) { light.shadow = true; }), LightUse::kByShadow);
   EXPECT_EQ(reasonOf([](Light& light) { light.shadow = true; }, ShadowMethod::kOff), LightUse::kClustered);
+}
+
+/// What a flat face sends out.
+Light face() {
+  Light light = everywhere();
+  light.kind = LightKind::kSpot;
+  light.cutoff = glm::radians(90.0);
+  light.exponent = 1;
+  return light;
+}
+
+TEST(LightUse, FacesAndPartsOfSourcesAreSampledThoughTheyCastNothing) {
+  const UseConditions conditions{Model::kBlinnPhong, ShadowMethod::kHard};
+  EXPECT_EQ(lightUse(face(), conditions), LightUse::kSampled);
+  Light part = everywhere();
+  part.cell = 1e-6f;
+  EXPECT_EQ(lightUse(part, conditions), LightUse::kSampled);
+  const auto useOf = [&](auto change) {
+    Light light = face();
+    change(light);
+    return lightUse(light, conditions);
+  };
+  EXPECT_EQ(useOf([](Light& light) { light.shadow = true; }), LightUse::kByShadow);
+  EXPECT_EQ(useOf([](Light& light) { light.cutoff -= 1e-6; }), LightUse::kByKind);
+  EXPECT_EQ(useOf([](Light& light) { light.exponent = 1.001f; }), LightUse::kByKind);
+  EXPECT_EQ(useOf([](Light& light) { light.falloff = SpotFalloff::kCone; }), LightUse::kByKind);
+  EXPECT_EQ(useOf([](Light& light) { light.range = 9; }), LightUse::kByRange);
+}
+
+// Its place, range and attenuation mean nothing.
+TEST(LightUse, DirectionalLightsAreSampledByThemselves) {
+  Light light{.kind = LightKind::kDirectional, .position = glm::dvec3(1e30), .attenuation = {1, 1, 0}};
+  const auto use = [&](ShadowMethod shadows) { return lightUse(light, {Model::kPhong, shadows}); };
+  EXPECT_EQ(use(ShadowMethod::kHard), LightUse::kSampledDirection);
+  light.shadow = true;
+  EXPECT_EQ(use(ShadowMethod::kExact), LightUse::kSampledDirection);
+  EXPECT_EQ(use(ShadowMethod::kSoftExact), LightUse::kSampledDirection);
+  EXPECT_EQ(use(ShadowMethod::kHard), LightUse::kByShadow);
+  light.half_angle = 0.01;
+  EXPECT_EQ(use(ShadowMethod::kExact), LightUse::kSampledDirection);
+  EXPECT_EQ(use(ShadowMethod::kSoftExact), LightUse::kByShadow);
+  light.ambient.y = 0.1f;
+  EXPECT_EQ(use(ShadowMethod::kExact), LightUse::kByAmbient);
+}
+
+TEST(LightUse, OnlyLightsOfTheUseThatCastAreCounted) {
+  std::vector<Light> lights(100, face());
+  for (std::size_t i = 0; i < 30; ++i) lights[i].shadow = true;
+  for (std::size_t i = 0; i < 10; ++i) lights[i].kind = LightKind::kDirectional;
+  const auto count = [&](LightUse use, ShadowMethod shadows) {
+    return countCasting(lights, use, {Model::kPhong, shadows});
+  };
+  EXPECT_EQ(count(LightUse::kSampled, ShadowMethod::kExact), 20u);
+  EXPECT_EQ(count(LightUse::kSampledDirection, ShadowMethod::kExact), 10u);
+  EXPECT_EQ(count(LightUse::kSampled, ShadowMethod::kOff), 0u);
 }
 
 TEST(LightUse, ALightThatCastsIsSampledWhereRaysKnowItsShadow) {

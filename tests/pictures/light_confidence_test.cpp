@@ -53,18 +53,49 @@ void lightAround(std::size_t count, double least, Random& random, Scene& scene) 
   }
 }
 
+/// Directional lights from everywhere that cast shadows, `least` of the brightest's intensity or more. All
+/// together give about 1. Half of them stand for their part of the sky.
+void skyAround(std::size_t count, double least, Random& random, Scene& scene) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Light light{.kind = LightKind::kDirectional, .direction = random.direction()};
+    const double intensity = 6 / double(count) * std::pow(least, random.between(0, 1));
+    light.diffuse = intensity * random.color();
+    light.specular = random.chance(0.5) ? light.diffuse : glm::vec3(intensity * random.color());
+    light.shadow = true;
+    if (random.chance(0.5)) light.cell = float(12.6 / double(count));
+    scene.lights.push_back(light);
+  }
+}
+
+/// The same of parts of faces, around what is seen.
+void facesAround(std::size_t count, double least, Random& random, Scene& scene) {
+  Scene around;
+  lightAround(count, least, random, around);
+  for (Light& light : around.lights) {
+    light.kind = LightKind::kSpot;
+    light.direction = random.direction();
+    light.cutoff = glm::radians(90.0);
+    light.exponent = 1;
+    if (random.chance(0.5)) light.cell = float(random.between(0, 0.1));
+    scene.lights.push_back(light);
+  }
+}
+
 /// Every channel of every pixel is a number.
 void expectFinite(const Image& image) {
   EXPECT_TRUE(
       std::all_of(image.pixels.begin(), image.pixels.end(), [](float v) { return std::isfinite(v); }));
 }
 
+using LightScene = void (*)(std::size_t count, double least, Random& random, Scene& scene);
+
 /// rounding: what is left to floats beyond the interval, as a share of the larger of 1 and the light.
 void expectSummed(std::size_t lights, bool highlights, Model model, double rounding,
-                  Scene scene = everySurface()) {
+                  Scene scene = everySurface(), LightScene light_scene = lightAround) {
   SCOPED_TRACE(fmt::format("{} lights, model {}", lights, int(model)));
   Random random{unsigned(lights)};
-  lightAround(lights, 0.01, random, scene);
+  scene.lights.clear();
+  light_scene(lights, 0.01, random, scene);
   if (!highlights)
     for (Light& light : scene.lights) light.specular = glm::vec3(0.0f);
   const ShadowedTruth truth = shadowedTruth(testDevice(), scene, {64, 36}, std::size_t(-1), model);
@@ -99,6 +130,15 @@ TEST(LightConfidence, OfFewLightsHighlightsAreWhatFloatsRound) {
     for (const std::size_t lights : {1, 3, 50}) expectSummed(lights, true, model, 0);
 }
 
+// What a direction, an axis and a cosine round is up to 4 · 2⁻²⁴ of a light, however small the cosine is.
+TEST(LightConfidence, OfFewDirectionsAndFacesTheIntervalIsWhatFloatsRound) {
+  for (const LightScene light_scene : {skyAround, facesAround})
+    for (const Model model : {Model::kPhong, Model::kBlinnPhong})
+      for (const std::size_t lights : {1, 3, 50})
+        for (const bool highlights : {false, true})
+          expectSummed(lights, highlights, model, 0x1p-22, everySurface(), light_scene);
+}
+
 // There a light's place in view space isn't a float: it takes two.
 TEST(LightConfidence, OfFewLightsFarFromTheEyeTheIntervalIsWhatFloatsRound) {
   Scene scene = everySurface();
@@ -112,7 +152,7 @@ TEST(LightConfidence, OfFewLightsFarFromTheEyeTheIntervalIsWhatFloatsRound) {
   expectSummed(50, false, Model::kPhong, 0, scene);
 }
 
-/// What several seeds gave together.
+/// What several seeds gave together. Groups of pixels are counted once for each set of lights.
 struct Calibration {
   HeldShare held;
   double bias = 0, rmse = 0, width = 0;  ///< as in ConfidenceCheck
@@ -139,9 +179,11 @@ Calibration calibrate(const ShadowedTruth& truth, ShadeSettings shade, unsigned 
 /// Pixels of a group share picks, so they may all hold or fail together, and be wrong in the same direction.
 /// Groups are independent. So of n groups the share that holds varies by √(C(1 − C)/n) at most, and the mean
 /// of the errors by their deviation over √n.
-void expectCalibrated(const ShadowedTruth& truth, const ShadeSettings& shade, unsigned seeds) {
+void expectCalibrated(const ShadowedTruth& truth, const ShadeSettings& shade, unsigned seeds,
+                      unsigned sets = 1) {
   SCOPED_TRACE(fmt::format("E = {}, C = {}", shade.light_error, shade.confidence));
-  const Calibration all = calibrate(truth, shade, seeds);
+  Calibration all = calibrate(truth, shade, seeds);
+  all.groups /= sets;
   const double c = shade.confidence;
   EXPECT_GE(all.held.share(), c - 3 * std::sqrt(c * (1 - c) / all.groups));
   EXPECT_LE(std::abs(all.bias), 4 * all.rmse / std::sqrt(all.groups));
@@ -150,10 +192,10 @@ void expectCalibrated(const ShadowedTruth& truth, const ShadeSettings& shade, un
   EXPECT_LE(all.width, 4 * all.rmse * deviationsOf(c)) << "intervals that say nothing";
 }
 
-void expectCalibratedAtAll(const ShadowedTruth& truth, unsigned seeds) {
+void expectCalibratedAtAll(const ShadowedTruth& truth, unsigned seeds, unsigned sets = 1) {
   for (const auto& [error, confidence] :
        {std::pair{1.0f / 16, 0.9}, std::pair{1.0f / 16, 0.99}, std::pair{1.0f / 64, 0.9}})
-    expectCalibrated(truth, {.light_error = error, .confidence = confidence}, seeds);
+    expectCalibrated(truth, {.light_error = error, .confidence = confidence}, seeds, sets);
 }
 
 TEST(LightConfidence, HoldsAsOftenAsStatedOfEverySurface) {
@@ -164,6 +206,22 @@ TEST(LightConfidence, HoldsAsOftenAsStatedOfEverySurface) {
     expectCalibratedAtAll(shadowedTruth(testDevice(), scene, {64, 36}, std::size_t(-1), model),
                           longRun() ? 16 : 3);
   }
+}
+
+TEST(LightConfidence, HoldsAsOftenAsStatedOfSkiesAndFaces) {
+  const struct { std::size_t sky, faces, points; } cases[] = {{4096, 0, 0}, {0, 4096, 0}, {4096, 4096, 1000}};
+  for (const Model model : {Model::kPhong, Model::kBlinnPhong})
+    for (const auto& [sky, faces, points] : cases) {
+      SCOPED_TRACE(fmt::format("{} directions, {} faces, {} points", sky, faces, points));
+      Scene scene = everySurface();
+      Random random(9);
+      lightAround(points, 0.01, random, scene);
+      skyAround(sky, 0.01, random, scene);
+      facesAround(faces, 0.01, random, scene);
+      const unsigned sets = sky > 0 && faces > 0 ? 2 : 1;
+      expectCalibratedAtAll(shadowedTruth(testDevice(), scene, {64, 36}, std::size_t(-1), model),
+                            longRun() ? 16 : 2, sets);
+    }
 }
 
 TEST(LightConfidence, HoldsAsOftenAsStatedOfShippedScenes) {

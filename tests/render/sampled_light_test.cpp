@@ -30,6 +30,19 @@ std::string gridOfLights(int rows, double intensity, const std::string& kind) {
 }
 constexpr const char* kCasts = R"(, "shadow": true)";
 
+/// Directional lights from all around, evenly. kind: further keys of a light.
+std::string skyOfLights(int count, double intensity, const std::string& kind) {
+  std::string lights;
+  for (int i = 0; i < count; ++i) {
+    const double up = 1 - (2 * i + 1.0) / count, across = std::sqrt(1 - up * up), turn = 2.399963 * i;
+    lights += fmt::format(
+        R"({}{{"type": "directional", "direction": [{}, {}, {}], "color": [0.5, 0.8, 1], "intensity": {}{}}})",
+        lights.empty() ? "" : ",", across * std::cos(turn), up, across * std::sin(turn), intensity / count,
+        kind);
+  }
+  return lights;
+}
+
 Scene sceneWith(const std::string& lights) {
   return sceneFromJson(
       R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0], "fov_y": 50}, "background": [0, 0, 0.25], "ambient": 0.05,
@@ -55,6 +68,27 @@ RenderSettings sampledSettings(const Scene& scene, glm::ivec2 size) {
   return settings;
 }
 
+constexpr const char* kFace =
+    R"(, "type": "spot", "direction": [0.6, -0.8, 0], "cutoff": 90, "exponent": 1, "shadow": true)";
+/// A grid of lights with keys of a spot.
+std::string gridOfFaces(int rows, double intensity) {
+  std::string lights = gridOfLights(rows, intensity, kFace);
+  const std::string point = R"("type": "point", )";
+  for (std::size_t at; (at = lights.find(point)) != lights.npos;) lights.erase(at, point.size());
+  return lights;
+}
+
+/// A sky, faces and points, with cells.
+const Scene& skyScene() {
+  static const Scene scene = [] {
+    Scene lit = sceneWith(skyOfLights(1000, 1.5, kCasts) + "," + gridOfFaces(25, 4) + "," +
+                          gridOfLights(20, 3, kCasts));
+    for (Light& light : lit.lights) light.cell = 0.004f;
+    return lit;
+  }();
+  return scene;
+}
+
 /// Channels of `picture` and of its layers.
 constexpr std::size_t kChannels = 9, kError = 3, kProof = 6;
 
@@ -74,13 +108,28 @@ TEST(SampledLight, IsTheSameBitsAtEveryWidthAndEveryTime) {
   }
 }
 
+TEST(SampledLight, OfSkiesAndFacesIsTheSameBitsAtEveryWidth) {
+  const RenderSettings settings = sampledSettings(skyScene(), {70, 50});
+  Stats stats;
+  const Image first = renderScene(testDevice(), skyScene(), settings, stats);
+  EXPECT_EQ(countOf(stats, "lights_sampled"), skyScene().lights.size());
+  for (const int lanes : kAllLanes) {
+    Stats other;
+    EXPECT_TRUE(renderScene(deviceWithLanes(lanes), skyScene(), settings, other).pixels == first.pixels)
+        << lanes << " lanes";
+    EXPECT_EQ(countOf(other, "sampled_rays"), countOf(stats, "sampled_rays")) << lanes << " lanes";
+  }
+}
+
 TEST(SampledLight, IsTheSameBitsOnADeviceWithMemoryOfItsOwn) {
-  const RenderSettings settings = sampledSettings(sampledScene(), {70, 50});
-  const Image first = picture(sampledScene(), settings);
-  OpenedDevice device;
-  openDevice("", device);
-  device.shares_host_memory = false;
-  EXPECT_TRUE(picture(sampledScene(), settings, device).pixels == first.pixels);
+  for (const Scene* scene : {&sampledScene(), &skyScene()}) {
+    const RenderSettings settings = sampledSettings(*scene, {70, 50});
+    const Image first = picture(*scene, settings);
+    OpenedDevice device;
+    openDevice("", device);
+    device.shares_host_memory = false;
+    EXPECT_TRUE(picture(*scene, settings, device).pixels == first.pixels);
+  }
 }
 
 TEST(SampledLight, BandsAreThePictureBitForBit) {
@@ -126,15 +175,32 @@ Image exactPicture(const Scene& scene, RenderSettings settings) {
 }
 
 TEST(SampledLight, ASeedIsAnotherPictureOfTheSameLight) {
-  RenderSettings settings = sampledSettings(sampledScene(), {70, 50});
-  const Image first = picture(sampledScene(), settings);
-  settings.shade.seed = 4'000'000'000u;
-  const Image second = picture(sampledScene(), settings);
-  expectNear(first, second, kChannels);
-  std::size_t same = 0;
-  for (std::size_t i = 0; i < first.pixels.size(); i += kChannels)
-    same += first.pixels[i + kError] > 0 && first.pixels[i] == second.pixels[i];
-  EXPECT_LT(same, first.pixels.size() / kChannels / 10);
+  const Scene sky = sceneWith(skyOfLights(1000, 1.5, kCasts));
+  for (const Scene* scene : {&sampledScene(), &skyScene(), &sky}) {
+    RenderSettings settings = sampledSettings(*scene, {70, 50});
+    const Image first = picture(*scene, settings);
+    settings.shade.seed = 4'000'000'000u;
+    const Image second = picture(*scene, settings);
+    expectNear(first, second, kChannels);
+    std::size_t same = 0;
+    for (std::size_t i = 0; i < first.pixels.size(); i += kChannels)
+      same += first.pixels[i + kError] > 0 && first.pixels[i] == second.pixels[i];
+    EXPECT_LT(same, first.pixels.size() / kChannels / 10);
+  }
+}
+
+TEST(SampledLight, OfLightsThatCastNoShadowAsksNoRays) {
+  Scene scene = skyScene();
+  for (Light& light : scene.lights) light.shadow = light.kind == LightKind::kPoint;
+  RenderSettings settings = sampledSettings(scene, {48, 36});
+  Stats stats;
+  expectNear(renderScene(testDevice(), scene, settings, stats), exactPicture(scene, settings), 3);
+  EXPECT_EQ(countOf(stats, "lights_sampled"), scene.lights.size());
+  EXPECT_GT(countOf(stats, "sampled_rays"), 0u);
+  settings.shade.shadows = ShadowMethod::kOff;
+  Stats of_none;
+  expectNear(renderScene(testDevice(), scene, settings, of_none), exactPicture(scene, settings), 3);
+  EXPECT_EQ(countOf(of_none, "sampled_rays"), 0u);
 }
 
 TEST(SampledLight, CropsAndSamplesAreWithinTheirIntervalsOfEachLight) {
@@ -176,9 +242,9 @@ TEST(SampledLight, GBuffersAreLitAsTheSceneIs) {
 }
 
 TEST(SampledLight, AddsUpWithClustersAndLightsOneByOne) {
-  const Scene scene =
-      sceneWith(gridOfLights(30, 4, kCasts) + "," + gridOfLights(45, 4, "") +
-                R"(, {"type": "directional", "direction": [-1, -2, -1], "intensity": 0.3, "shadow": true})");
+  const Scene scene = sceneWith(
+      gridOfLights(30, 4, kCasts) + "," + gridOfLights(45, 4, "") +
+      R"(, {"type": "spot", "position": [3, 6, 3], "direction": [-1, -2, -1], "cutoff": 80, "intensity": 0.3, "shadow": true})");
   RenderSettings settings = sampledSettings(scene, {64, 48});
   Stats stats;
   const Image both = renderScene(testDevice(), scene, settings, stats);

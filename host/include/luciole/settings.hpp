@@ -75,8 +75,8 @@ struct ShadeSettings {
   int log2_degree = 7;  ///< of the polynomial that approximates log2, 3 to 9
   int exp2_degree = 6;  ///< of the polynomial that approximates exp2, 2 to 7
   /// E, 0 to 1: many lights need not be summed one by one, as long as each pixel's error stays below
-  /// E·max(light_error_floor, colour) in each channel. For lights without shadows the error is proven. Lights
-  /// that cast them are sampled, if their shadows aren't those of maps that were asked for: then the pixel's
+  /// E·max(light_error_floor, colour) in each channel. For points without shadows the error is proven. Points
+  /// that cast them, directions and faces are sampled, if no map's shadow was asked for: then the pixel's
   /// interval holds with the probability `confidence`. 0: each light is summed by itself.
   float light_error = 0;
   float light_error_floor = 1;  ///< above 0; a small one makes light_error a share of the colour

@@ -217,7 +217,9 @@ void addLightUses(const Scene& scene, const PicturePlan& plan, Report& report) {
   const ShadeSettings& settings = plan.shade;
   const LightUseCounts counts = countUses(scene.lights, useConditions(settings));
   const std::size_t clusterable = counts[std::size_t(LightUse::kClustered)],
-                    sampleable = counts[std::size_t(LightUse::kSampled)];
+                    placed = counts[std::size_t(LightUse::kSampled)],
+                    directions = counts[std::size_t(LightUse::kSampledDirection)],
+                    sampleable = placed + directions;
   Json& json = report.json["lights"];
   json["clusterable"] = clusterable;
   json["sampleable"] = sampleable;
@@ -234,8 +236,12 @@ void addLightUses(const Scene& scene, const PicturePlan& plan, Report& report) {
                       sampleable, reasons.empty() ? "" : "; not: ", fmt::join(reasons, ", ")));
   if (!(settings.light_error > 0)) return;
   const std::size_t clustered = plan.features.has(Feature::kClusteredLights) ? clusterable : 0,
-                    sampled = plan.features.has(Feature::kSampledLights) ? sampleable : 0;
-  const double rays = sampled > 0 ? sampledRays(sampled, settings) : 0;
+                    sampled_places = plan.features.has(Feature::kSampledLights) ? placed : 0,
+                    sampled_directions = plan.features.has(Feature::kSampledDirections) ? directions : 0,
+                    sampled = sampled_places + sampled_directions;
+  double rays = 0;
+  for (const std::size_t set : {sampled_places, sampled_directions})
+    if (set > 0) rays += sampledRays(set, settings);
   json["clustered"] = clustered;
   json["sampled"] = sampled;
   json["rays_per_point"] = rays;

@@ -188,10 +188,14 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings, cons
                    .lights = double(scene.lights.size()),
                    .pairs = shaded * mean.square,
                    .scene_bytes = sceneBytes(scene)};
-  if (plan.features.has(Feature::kSampledLights)) {
-    const std::size_t sampled =
-        countUses(scene.lights, useConditions(shade))[std::size_t(LightUse::kSampled)];
-    work.sampling = sampledMilliseconds({sampled, shaded, work.triangles}, shade);
+  if (plan.features.sampledLight()) {
+    const UseConditions conditions = useConditions(shade);
+    const LightUseCounts counts = countUses(scene.lights, conditions);
+    for (const LightUse use : {LightUse::kSampled, LightUse::kSampledDirection})
+      if (!isSummed(use, plan.features))
+        work.sampling += sampledMilliseconds(
+            {counts[std::size_t(use)], countCasting(scene.lights, use, conditions), shaded, work.triangles},
+            shade);
   }
   if (plan.features.has(Feature::kLightLists)) {
     work.list_entries = shaded / double(kTilePixels) * mean.tile;
