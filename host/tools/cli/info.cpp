@@ -197,7 +197,8 @@ void addCameras(const Scene& scene, Report& report) {
 void addLights(const Scene& scene, const LightCounts& lights, Report& report) {
   report.json["lights"] = {{"count", scene.lights.size()},      {"point", lights.point},
                            {"directional", lights.directional}, {"spot", lights.spot},
-                           {"casting", lights.casting},         {"everywhere", lights.everywhere}};
+                           {"casting", lights.casting},         {"everywhere", lights.everywhere},
+                           {"of_sources", scene.source_lights}};
   report.json["adds_lights"] = scene.adds_lights;
   std::string kinds =
       scene.adds_lights ? "0 in the file; these would be added: " : fmt::format("{}", scene.lights.size());
@@ -209,6 +210,14 @@ void addLights(const Scene& scene, const LightCounts& lights, Report& report) {
   if (!scene.lights.empty())
     addLine(report, "",
             fmt::format("{} cast shadows, {} reach everywhere", lights.casting, lights.everywhere));
+  if (const LightSource* sky = environmentOf(scene))
+    addLine(report, "environment",
+            fmt::format("{}, {}x{}, {} lights", sky->sky->name, sky->sky->levels[0].width,
+                        sky->sky->levels[0].height, sky->cells.size()));
+  if (scene.source_lights > 0)
+    addLine(report, "of sources",
+            fmt::format("{} lights take the place of {} and of what glows", scene.source_lights,
+                        counted(scene.sources.size(), "source")));
 }
 
 /// For how many of the lights clusters may stand and how many may be sampled (--light-error), and why not the

@@ -217,6 +217,15 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
                         ->check(CLI::Range(0.0, 1e18))
                         ->capture_default_str();
   command
+      ->add_flag("--sources", options->sources,
+                 "so many lights for each of SCENE's environments, faces and glowing meshes, beside its own "
+                 "lights; errors are from 16 times the largest number of them")
+      ->excludes(density)
+      ->excludes(range)
+      ->excludes(cutoff)
+      ->excludes(no_range)
+      ->excludes(intensity);
+  command
       ->add_flag(
           "--own-lights", options->own_lights,
           "the first of SCENE's own lights, or of --field's .csv file, as they are: brightness, ranges, "

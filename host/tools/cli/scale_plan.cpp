@@ -272,6 +272,7 @@ LightField ownField(const ScaleOptions& options, const Scene& scene, std::uint64
 
 LightField makeField(const ScaleOptions& options, const Scene& scene, const Bounds& box,
                      std::uint64_t most_lights) {
+  if (options.sources) return {.count = most_lights};
   if (options.own_lights) return ownField(options, scene, most_lights);
   LightField field;
   if (isList(options)) {
@@ -299,14 +300,14 @@ LightField makeField(const ScaleOptions& options, const Scene& scene, const Boun
 /// Whether ranges are chosen for a density of lights: if --density is given, or if nothing else says the
 /// range (--range, --cutoff, or a file of lights).
 bool choosesRanges(const CLI::App& command, const ScaleOptions& options) {
-  if (options.own_lights) return false;
+  if (options.own_lights || options.sources) return false;
   return isGiven(command, "density") || (!options.range && !options.cutoff && !isList(options));
 }
 
 /// Whether lights lose their ranges: if that is asked for, or if a light error is, which concerns lights
 /// without range alone, and nothing else says how far they reach.
 bool removesRanges(const CLI::App& command, const ScaleOptions& options, const std::vector<ScaleAxis>& axes) {
-  if (options.own_lights) return false;
+  if (options.own_lights || options.sources) return false;
   if (options.no_range) return true;
   const bool is_reach_said = std::any_of(std::begin(kReaches), std::end(kReaches),
                                          [&](const char* name) { return isGiven(command, name); }) ||
@@ -334,7 +335,8 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
     shared.emplace_back("G-buffer's SHA-256", hashOfFile(options.gbuffer));
   }
   if (options.frame != 1) shared.emplace_back("frame", std::to_string(options.frame));
-  if (options.own_lights) shared.emplace_back("own-lights", "true");
+  if (options.own_lights && !options.sources) shared.emplace_back("own-lights", "true");
+  if (options.sources) shared.emplace_back("sources", "true");
   if (!settings.camera.name.empty()) shared.emplace_back("camera", settings.camera.name);
   std::vector<std::string> names{"seed", "check-pixels", "exposure"};
   for (const ScaleAxis& axis : kAxes) names.push_back(axis.name);
@@ -344,8 +346,8 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
         std::any_of(axes.begin(), axes.end(), [&](const ScaleAxis& axis) { return axis.name == name; }) ||
         (varies_reach && isReach({name, {}}));
     const bool is_meant =
-        name == "field"                          ? !options.own_lights || isList(options)
-        : name == "intensity"                    ? !options.own_lights
+        name == "field"       ? (!options.own_lights && !options.sources) || isList(options)
+        : name == "intensity" ? !options.own_lights && !options.sources
         : name == "samples" || name == "shading" ? options.gbuffer.empty()
         : name == "range"                        ? options.range.has_value()
         : name == "cutoff"                       ? options.cutoff.has_value()
@@ -376,6 +378,7 @@ void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
        {std::pair("SCENE", options.gbuffer.empty() ? &options.scene : &options.gbuffer),
         std::pair("--lights", &options.lights), std::pair("--output", &options.output)})
     if (value->empty()) throw InputError(fmt::format("scale: {} is required", name));
+  if (options.sources && options.own_lights) throw InputError("scale: --sources, --own-lights: expected one");
   if (options.scene == "-") throw InputError("scale: expected a file as SCENE, got standard input");
   const auto isTyped = [&](const char* name) { return command.get_option(name)->count() > 0; };
   if (options.own_lights && isTyped("--field") && !isList(options))
@@ -395,8 +398,10 @@ void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
   for (const ScaleAxis& axis : axes) {
     if (command.get_option("--" + axis.name)->count() > 0)
       throw InputError(fmt::format("scale: --{} is given and varied; expected one", axis.name));
-    if (options.own_lights && (isReach(axis) || axis.name == "intensity" || axis.name == "field"))
-      throw InputError(fmt::format("scale: --vary {}: --own-lights leaves lights as they are", axis.name));
+    if ((options.own_lights || options.sources) &&
+        (isReach(axis) || axis.name == "intensity" || axis.name == "field"))
+      throw InputError(fmt::format("scale: --vary {}: --{} leaves lights as they are", axis.name,
+                                   options.sources ? "sources" : "own-lights"));
     if (!options.gbuffer.empty() && (is_view_typed || isOfView(axis.name))) throw InputError(kViewOfGBuffer);
     if (axis.name == kConfidenceAxis && options.picture.value("shadows") == "off" && !varies("shadows"))
       throw InputError(
@@ -413,6 +418,9 @@ void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
 
 ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const Scene& scene,
                                std::optional<GBuffer> gbuffer) {
+  if (options.sources && scene.source_lights == 0)
+    throw InputError(fmt::format(
+        "{}: nothing that many lights take the place of, expected some for --sources", scene.name));
   ScaleExperiment experiment;
   experiment.gbuffer = std::move(gbuffer);
   ScaleDescription& description = experiment.description;
@@ -420,6 +428,9 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
   description.scene = utf8Of(experiment.gbuffer ? options.gbuffer : options.scene);
   description.digest = sceneDigest(scene);
   description.lights = parseLights(options.lights);
+  if (options.sources)
+    experiment.truth_lights =
+        std::uint32_t(std::min<std::uint64_t>(16 * description.lights.back(), kMostSourceLights));
   description.axes = parseAxes(options.vary);
   description.repeats = options.repeats;
   experiment.check_pixels = options.check_pixels;

@@ -17,7 +17,7 @@ struct ScaleOptions {
   std::vector<std::string> vary, against;
   double density = 8;
   std::optional<double> range, cutoff;
-  bool no_range = false, own_lights = false;
+  bool no_range = false, own_lights = false, sources = false;
   int frame = 1;
   double intensity = 1;
   int repeats = 5;

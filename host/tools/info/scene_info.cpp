@@ -18,10 +18,11 @@ std::optional<KeyFrames> keyFrames(const Animation& animation) {
   for (const Curve& curve : animation.curves) add(curve);
   for (const CameraMotion& motion : animation.cameras)
     for (const Curve* curve : {&motion.eye, &motion.target, &motion.fov_y}) add(*curve);
-  for (const LightMotion& motion : animation.lights)
-    for (const Curve* curve : {&motion.position, &motion.direction, &motion.target, &motion.color,
-                               &motion.intensity, &motion.range})
-      add(*curve);
+  for (const std::vector<LightMotion>* motions : {&animation.lights, &animation.sources})
+    for (const LightMotion& motion : *motions)
+      for (const Curve* curve : {&motion.position, &motion.direction, &motion.target, &motion.color,
+                                 &motion.intensity, &motion.range, &motion.rotate})
+        add(*curve);
   return all;
 }
 

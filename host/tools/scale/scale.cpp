@@ -75,6 +75,11 @@ void setLights(Bench& bench, std::size_t index) {
   const LightsKey key{task.field, field.count, task.density, task.no_range};
   if (bench.lit_by == key) return;
   bench.lit_by.reset();  // until they are there
+  if (bench.experiment.truth_lights > 0) {
+    setLightCounts(bench.scene, std::uint32_t(field.count));
+    bench.lit_by = key;
+    return;
+  }
   clearLights(bench.scene);
   expandLightField(field, bench.scene);
   if (task.density > 0) {
@@ -98,8 +103,10 @@ const Truth& findTruth(Bench& bench, const RenderSettings& settings) {
   Truth& truth = bench.truth;
   const Scene& scene = bench.scene;
   if (!truth.image.pixels.empty() && truth.model == settings.shade.model &&
-      truth.shading == settings.shading && truth.lights == scene.lights)
+      truth.shading == settings.shading &&
+      (bench.experiment.truth_lights > 0 || truth.lights == scene.lights))
     return truth;
+  if (bench.experiment.truth_lights > 0) setLightCounts(bench.scene, bench.experiment.truth_lights);
   ReferenceSettings reference;
   reference.model = settings.shade.model;
   std::optional<RayScene> rays;
@@ -122,6 +129,7 @@ const Truth& findTruth(Bench& bench, const RenderSettings& settings) {
     for (int c = 0; c < 3; ++c) pixel[c] = pictureValue(truth.colors[i][c]);
     pixel[3] = 1;
   }
+  if (bench.experiment.truth_lights > 0) setLightCounts(bench.scene, std::uint32_t(bench.lit_by->lights));
   return truth;
 }
 

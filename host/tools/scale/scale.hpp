@@ -123,8 +123,11 @@ struct ScaleExperiment {
   std::optional<GBuffer> gbuffer{};
   std::size_t check_pixels = 1024;  ///< about how many pixels are compared with the reference
   std::uint64_t seed = 0;           ///< chooses these pixels
-  int truth_samples = 1;            ///< samples a pixel that make the truth
-  std::size_t too_exact = 0;        ///< points that were left out because summing each light takes too long
+  /// Points' lights are of the scene's sources, so many each (setLightCounts), and the truth is by so many;
+  /// 0: they are the fields' and the truth is by the same lights.
+  std::uint32_t truth_lights = 0;
+  int truth_samples = 1;      ///< samples a pixel that make the truth
+  std::size_t too_exact = 0;  ///< points that were left out because summing each light takes too long
   std::vector<std::string> missing{};  ///< other methods' points that were left out, a line each, for people
 };
 
