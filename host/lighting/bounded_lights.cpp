@@ -18,7 +18,7 @@ glm::vec3 colorOf(const Light& light, ColorOf color) { return color ? light.*col
 
 /// The clusters of these lights in the camera's view space.
 LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::vector<std::uint32_t>& chosen,
-                         ColorOf color) {
+                         ColorOf color, bool lux) {
   const glm::dmat4 world_to_view = worldToView(camera);
   const glm::dmat3 rotation(world_to_view);
   std::vector<UnboundedLight> lights(chosen.size());
@@ -27,7 +27,8 @@ LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::ve
     const bool directional = light.kind == LightKind::kDirectional;
     lights[i] = {directional ? -(rotation * light.direction)
                              : glm::dvec3(world_to_view * glm::dvec4(light.position, 1)),
-                 glm::dvec3(colorOf(light, color)), directional ? 1.0 : double(light.attenuation.z)};
+                 double(lux ? luxOfColor(light) : 1.0f) * glm::dvec3(colorOf(light, color)),
+                 directional ? 1.0 : double(light.attenuation.z)};
   });
   return buildLightClusters(lights);
 }
@@ -41,8 +42,8 @@ ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
     return colorOf(scene.lights[light], diffuse) == colorOf(scene.lights[light], specular);
   });
   ClusterSet set;
-  set.diffuse = clustersOf(scene, camera, chosen, diffuse);
-  if (highlights && !one_color) set.specular = clustersOf(scene, camera, chosen, specular);
+  set.diffuse = clustersOf(scene, camera, chosen, diffuse, colors.lux);
+  if (highlights && !one_color) set.specular = clustersOf(scene, camera, chosen, specular, false);
   set.lights = chosen.size();
   return set;
 }

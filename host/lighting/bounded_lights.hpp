@@ -22,6 +22,7 @@ BoundedLights boundedLights(const Scene& scene, const FeatureSet& features, cons
 /// Which colours of lights count; the others are black.
 struct LightColors {
   bool diffuse = true, specular = true;
+  bool lux = false;  ///< in lux (luxOfColor)
 };
 
 /// Sets the clusters and the sampled lights of a set. features: the picture's. Lights whose colours give

@@ -29,10 +29,21 @@ std::vector<LightPart> lightParts() {
       {Aov::kSpecularLight, {.name = named(2), .all_lights = true, .light_ambient = false, .diffuse = false}},
       {Aov::kEmission, {.name = named(3), .emission = true, .background = true}},
       {Aov::kFog, {.name = named(4), .fog = true}},
+      {Aov::kIlluminance,
+       {.name = "illuminance.",
+        .all_lights = true,
+        .light_ambient = false,
+        .specular = false,
+        .illuminance = true}},
   };
 }
 
 void darken(float4& color) { color.x = color.y = color.z = 0; }
+void brighten(float4& color, float factor) {
+  color.x *= factor;
+  color.y *= factor;
+  color.z *= factor;
+}
 
 /// The lights of a layer.
 struct ChosenLights {
@@ -41,8 +52,8 @@ struct ChosenLights {
 };
 
 /// The light set of a layer, but for bounded lights. summed: see ChosenLights.
-LightSet layerLights(OpenedDevice& device, const LightSet& lights, const std::vector<std::uint32_t>& summed,
-                     const LightLayer& layer) {
+LightSet layerLights(OpenedDevice& device, const Scene& scene, const LightSet& lights,
+                     const std::vector<std::uint32_t>& summed, const LightLayer& layer) {
   LightSet set;
   set.frame = lights.frame;
   if (!layer.ambient) darken(set.frame.ambient);
@@ -50,11 +61,13 @@ LightSet layerLights(OpenedDevice& device, const LightSet& lights, const std::ve
   if (!layer.background) darken(set.frame.background);
   if (layer.background) set.sky = lights.sky;
   set.emission = layer.emission;
+  if (layer.illuminance) set.frame.model = kPhongModel;  // whose diffuse light is N·L
   for (const std::uint32_t i : summed) {
     ShadeLight light = lights.lights[i];
     if (!layer.light_ambient) darken(light.ambient);
     if (!layer.diffuse) darken(light.diffuse);
     if (!layer.specular) darken(light.specular);
+    if (layer.illuminance) brighten(light.diffuse, luxOfColor(scene.lights[lights.order[i]]));
     set.lights.push_back(light);
     set.order.push_back(lights.order[i]);
     if (!lights.beam_lights.empty()) set.beam_lights.push_back(lights.beam_lights[i]);
@@ -117,9 +130,9 @@ std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, co
   std::vector<LitLayer> prepared;
   for (LightLayer& layer : layers) {
     const ChosenLights& chosen = layer.all_lights ? all : layer.group ? in_groups[*layer.group] : nothing;
-    LightSet set = layerLights(device, lights, chosen.summed, layer);
-    setBoundedLights(scene, camera, lighting.beams, features, chosen.bounded, {layer.diffuse, layer.specular},
-                     set);
+    LightSet set = layerLights(device, scene, lights, chosen.summed, layer);
+    setBoundedLights(scene, camera, lighting.beams, features, chosen.bounded,
+                     {layer.diffuse, layer.specular, layer.illuminance}, set);
     const FeatureSet needed = layerFeatures(features, layer);
     prepared.push_back({std::move(layer), needed, std::move(set)});
   }
@@ -127,6 +140,13 @@ std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, co
 }
 
 FeatureSet layerFeatures(FeatureSet features, const LightLayer& layer) {
+  if (layer.illuminance) {
+    features = features.without(featuresFor(kForFog, features));
+    for (const Model model : kAllModels) features.set(featureOf(model), model == Model::kPhong);
+    for (const Feature of_surfaces : {Feature::kUserModels, Feature::kMaterialModels, Feature::kTangents,
+                                      Feature::kSpecular, Feature::kAmbient})
+      features.set(of_surfaces, false);
+  }
   // Light that comes with bounds reaches the shading kernels as light that surfaces emit.
   if (!layer.emission && !features.lightError()) features.set(Feature::kEmission, false);
   return features;

@@ -24,6 +24,7 @@ struct LightLayer {
   bool light_ambient = true, diffuse = true, specular = true;  ///< which colours of its lights it has
   bool ambient = false;                                        ///< the scene's ambient light
   bool emission = false;
+  bool illuminance = false;  ///< what surfaces get of it, as if they were white and there was no fog
   bool fog = false;         ///< the fog's own colour; all light is seen through the fog
   bool background = false;  ///< Scene::background, or the environment
 };

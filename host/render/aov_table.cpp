@@ -109,6 +109,7 @@ const std::array<AovRow, kAovCount>& aovTable() {
       {.aov = Aov::kSpecularLight, .name = "specular_light"},
       {.aov = Aov::kEmission, .name = "emission"},
       {.aov = Aov::kFog, .name = "fog"},
+      {.aov = Aov::kIlluminance, .name = "illuminance"},
       {.aov = Aov::kObjectId,
        .name = "object_id",
        .channels = {"object_id"},

@@ -128,9 +128,11 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
 }
 
 void setLightLayer(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings,
-                   std::size_t first_channel, Image& image) {
+                   const LightLayer& of, std::size_t first_channel, Image& image) {
   const std::size_t n = gbuffer.pixels();
-  const float scale = scaleOf(settings);
+  RenderSettings unexposed = settings;
+  if (of.illuminance) unexposed.exposure = 0;
+  const float scale = scaleOf(unexposed);
   const bool has_bounds = boundsLayers(settings), is_bounded = !sums.light_error.empty();
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
     float* const layer = pixel + first_channel;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "lighting/light_gbuffer.hpp"
+#include "lighting/light_layers.hpp"
 #include "luciole/gbuffer.hpp"
 #include "luciole/image.hpp"
 #include "render/pixel_sums.hpp"
@@ -51,6 +52,6 @@ void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettin
 /// Fills in the layerChannels() of a layer of light, from first_channel on, as setColors() does R G B and
 /// Aov::kLightError. sums: of its colours and bounds, over the samples. Without bounds these are 0.
 void setLightLayer(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings,
-                   std::size_t first_channel, Image& image);
+                   const LightLayer& of, std::size_t first_channel, Image& image);
 
 }  // namespace luciole

@@ -120,7 +120,8 @@ struct SampleLister final : PointLister {
       addPlane(std::move(lit.light_error), bounds, sum.light_error);
       recycled = addPlane(std::move(lit.color), 3 * drawn.pixels(), sum.color);
       if (!isLast()) return;
-      setLightLayer(drawn, sum, picture.settings, channelOfLayer(picture, image, layer), image);
+      setLightLayer(drawn, sum, picture.settings, picture.layers[layer].layer,
+                    channelOfLayer(picture, image, layer), image);
       recycled = std::move(sum.color);
     });
   }

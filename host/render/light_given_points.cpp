@@ -52,7 +52,8 @@ struct GivenLister final : PointLister {
     addBackground(picture.layers[layer].lights, lit);
     timed(picture.stats, Stage::kResolve, [&] {
       const PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error), {}};
-      setLightLayer(given, sums, picture.settings, channelOfLayer(picture, image, layer), image);
+      setLightLayer(given, sums, picture.settings, picture.layers[layer].layer,
+                    channelOfLayer(picture, image, layer), image);
     });
   }
 };

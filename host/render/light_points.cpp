@@ -1,5 +1,7 @@
 #include "render/light_points.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "image/light_names.hpp"
@@ -7,16 +9,27 @@
 
 namespace luciole {
 
+/// White surfaces in the same places.
+static GBuffer whitened(const GBuffer& gbuffer) {
+  GBuffer white = gbuffer;
+  std::fill(white.diffuse.begin(), white.diffuse.end(), 1.0f);
+  return white;
+}
+
 void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister& lister) {
-  const auto light = [&](const LightSet& lights, const FeatureSet& of_lights, const PixelCounts& counts) {
+  const auto light = [&](const LightSet& lights, const FeatureSet& of_lights, const PixelCounts& counts,
+                         const GBuffer& points) {
     return lightGBuffer(picture.device, picture.scene, picture.lighting,
-                        {lights, of_lights, *lister.gbuffer, counts, std::exchange(lister.recycled, {})},
+                        {lights, of_lights, points, counts, std::exchange(lister.recycled, {})},
                         picture.stats);
   };
   while (lister.next()) {
-    lister.take(light(picture.lighting.lights, features, lister.counts));
+    lister.take(light(picture.lighting.lights, features, lister.counts, *lister.gbuffer));
     for (std::size_t i = 0; i < picture.layers.size(); ++i) {
-      LitPlanes lit = light(picture.layers[i].lights, picture.layers[i].features, {});
+      const LitLayer& layer = picture.layers[i];
+      std::optional<GBuffer> white;
+      if (layer.layer.illuminance) white = whitened(*lister.gbuffer);
+      LitPlanes lit = light(layer.lights, layer.features, {}, white ? *white : *lister.gbuffer);
       if (!boundsLayers(picture.settings)) lit.light_error = {};
       lister.takeLayer(i, {.color = std::move(lit.color), .light_error = std::move(lit.light_error)});
     }

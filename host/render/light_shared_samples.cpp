@@ -185,7 +185,7 @@ struct SharedLister final : PointLister {
       setColors(shared.gbuffer, sums, picture.settings, image);
       for (std::size_t layer = 0; layer < layer_sums.size(); ++layer) {
         addUncovered(picture.layers[layer].lights, layer_sums[layer].color);
-        setLightLayer(shared.gbuffer, layer_sums[layer], picture.settings,
+        setLightLayer(shared.gbuffer, layer_sums[layer], picture.settings, picture.layers[layer].layer,
                       channelOfLayer(picture, image, layer), image);
       }
       return cutOut(std::move(image), sampled.inner.first - sampled.view.crop_origin,

@@ -59,6 +59,10 @@ struct Light {
   bool operator==(const Light&) const = default;
 };
 
+/// How many lux a colour of 1 stands for, of a light that reaches a surface by so much: the lights of
+/// sources, whose colours are of radiance, give a diffuse colour its share of 1/π, and others all.
+inline float luxOfColor(const Light& light) { return light.cell > 0 ? 3.14159265f : 1.0f; }
+
 /// How much light a luminaire gives in each direction.
 struct LightProfile {
   std::string name = {};  ///< the file's path, for messages

@@ -105,6 +105,12 @@ enum class Aov : std::uint8_t {
   kSpecularLight,
   kEmission,  ///< and the background
   kFog,       ///< the fog's own colour
+  /// The light that arrives at a surface, whatever it reflects: Σ colour · falloff · N·L of the lights that
+  /// it sees, before any fog, for which exposure doesn't count. Where a light's colour is its intensity in
+  /// candela, with an attenuation of (0, 0, 1), of a directional light its lux, and of a source its radiance
+  /// in candela a square metre, these are lux. R G B; of coloured light the lux are the luminance, 0.2126 R +
+  /// 0.7152 G + 0.0722 B. Ambient light isn't in it.
+  kIlluminance,
   // Of pictures of a scene, not of a G-buffer.
   kObjectId,        ///< index in Scene::objects; -1 for background
   kMaterialId,      ///< index in Scene::materials; -1 for background

@@ -47,6 +47,7 @@ void addRelightCommand(CLI::App& app, CommandContext& context);
 void addBakeCommand(CLI::App& app, CommandContext& context);
 void addMixCommand(CLI::App& app, CommandContext& context);
 void addShowCommand(CLI::App& app, CommandContext& context);
+void addIlluminanceCommand(CLI::App& app, CommandContext& context);
 void addShadowMapCommand(CLI::App& app, CommandContext& context);
 void addReferenceCommand(CLI::App& app, CommandContext& context);
 void addCompareCommand(CLI::App& app, CommandContext& context);

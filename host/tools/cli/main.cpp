@@ -252,6 +252,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   addBakeCommand(app, context);
   addMixCommand(app, context);
   addShowCommand(app, context);
+  addIlluminanceCommand(app, context);
   addShadowMapCommand(app, context);
   addReferenceCommand(app, context);
   addCompareCommand(app, context);

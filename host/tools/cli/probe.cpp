@@ -32,6 +32,17 @@ double brightness(const LightTerm& term) {
   return std::max({sum.x, sum.y, sum.z});
 }
 
+/// What arrives at the point, as Aov::kIlluminance has it.
+double luxAt(const Scene& scene, const PixelTerms& terms) {
+  double lux = 0;
+  for (const LightTerm& term : terms.lights) {
+    const glm::vec3& color = scene.lights[term.light].diffuse;
+    lux += luxOfColor(scene.lights[term.light]) * term.falloff * term.visibility * std::max(term.n_dot_l, 0.0) *
+           (0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b);
+  }
+  return lux;
+}
+
 /// A line for each light, with the sum so far.
 std::string lightTable(const Scene& scene, const PixelTerms& terms) {
   std::vector<LightTerm> lights = terms.lights;
@@ -104,6 +115,7 @@ std::string probeText(OpenedDevice& device, const Scene& scene, RenderSettings s
   glm::dvec3 color(scene.background);
   if (terms) {
     text += surfaceText(scene, *terms, settings.camera) + lightTable(scene, *terms) + "\n";
+    text += fmt::format("illuminance: {:.6g} lux, if lights' colours are candela\n", luxAt(scene, *terms));
     if (scene.fog.mode != FogMode::kNone)
       text += fmt::format("fog: {} of that gets through, and the rest is {}\n", shown(terms->fog_share),
                           shown(scene.fog.color));
