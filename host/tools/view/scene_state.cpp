@@ -75,7 +75,7 @@ std::string nameOr(const std::string& name, const char* kind, std::size_t index)
 Json sceneState(const Scene& scene, const SceneValues& loaded) {
   Json cameras = Json::array(), lights = Json::array(), materials = Json::array();
   for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
-  for (std::size_t i = 0; i < std::min(ownLights(loaded).size(), kMostListed); ++i)
+  for (std::size_t i = 0; i < std::min(loaded.lights.size() - loaded.source_lights, kMostListed); ++i)
     lights.push_back(lightState(loaded.lights[i], i));
   for (std::size_t i = 0; i < loaded.materials.size(); ++i)
     materials.push_back(materialState(loaded.materials[i], i));
