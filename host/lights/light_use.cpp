@@ -21,7 +21,7 @@ bool isKnownByRays(const Light& light, ShadowMethod shadows) {
 }  // namespace
 
 const char* reasonName(LightUse use) {
-  static constexpr const char* kNames[]{"none",  "none",        "model",   "kind", "shadow",
+  static constexpr const char* kNames[]{"none",  "none",        "model",   "kind", "profile", "shadow",
                                         "range", "attenuation", "ambient", "place"};
   static_assert(std::size(kNames) == kLightUses);
   return kNames[std::size_t(use)];
@@ -30,6 +30,7 @@ const char* reasonName(LightUse use) {
 LightUse lightUse(const Light& light, const UseConditions& conditions) {
   if (conditions.model != Model::kPhong && conditions.model != Model::kBlinnPhong) return LightUse::kByModel;
   if (light.kind != LightKind::kPoint) return LightUse::kByKind;
+  if (light.luminaire >= 0) return LightUse::kByProfile;
   const bool casts = light.shadow && conditions.shadows != ShadowMethod::kOff;
   if (casts && !isKnownByRays(light, conditions.shadows)) return LightUse::kByShadow;
   if (std::isfinite(light.range)) return LightUse::kByRange;

@@ -19,6 +19,7 @@ enum class LightUse : std::uint8_t {
   kSampled,        ///< its shadow is known by rays
   kByModel,        ///< not all surfaces have Phong's model, nor have all Blinn's
   kByKind,         ///< it is no point light
+  kByProfile,      ///< it is a luminaire with a profile
   kByShadow,       ///< its shadow is that of a map, or of a light of a size
   kByRange,        ///< its range is finite
   kByAttenuation,  ///< it doesn't fall off as 1 / (q d²)

@@ -72,6 +72,13 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
       {"type": "spot", "position": [0, 4, 0], "target": [0, 0, 0], "cutoff": 180},
       {"type": "spot", "position": [0, 4, 0], "target": [0, 0, 0], "inner_cone": 10},
       {"type": "spot", "position": [0, 4, 0], "direction": [0, 0, 1], "outer_cone": 90}]})"},
+    {"Profiles", R"({"lights": [
+      {"type": "point", "position": [0, 4, 0], "profile": "lamp.ies", "up": [0, 0, 1], "lumens": 900, "intensity": 0.5,
+       "keys": [{"frame": 1, "intensity": 1}]},
+      {"type": "point", "position": [0, 4, 0], "profile": "lamp.ies", "direction": [0, -1, 1], "candela": 2,
+       "keys": [{"frame": 1, "direction": [0, -1, 0]}]},
+      {"type": "spot", "position": [0, 4, 0], "profile": "lamp.ies", "target": [0, 0, 0], "cutoff": 60},
+      {"type": "point", "position": [0, 4, 0], "lumens": 800}]})"},
     {"LightFields", R"({"objects": [{"primitive": "plane", "segments": 1}], "light_fields": [
       {"count": 3, "seed": 7, "min": [0, 0, 0], "max": [1, 2, 3], "color": [1, 0.5, 0.2], "intensity": [1, 2], "range": [0.5, 1]},
       {"count": 3, "shape": "box", "min": [0, 0, 0], "max": [1, 1, 1], "colors": [1, [1, 0, 0]], "intensity": 2, "range": 2},
