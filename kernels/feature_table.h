@@ -12,6 +12,7 @@
   X(SpotLights, SPOT_LIGHTS, "spot lights", "lights with a place and a cone", 0)                             \
   X(SpotExponent, SPOT_EXPONENT, "spot exponent", "OpenGL's cosine power inside a spot", 0)                  \
   X(SpotCone, SPOT_CONE, "spot cone", "glTF's ramp between two cones", 0)                                    \
+  X(Profiles, PROFILES, "profiles", "luminaires with a profile of their light", 0)                           \
   X(Attenuation, ATTENUATION, "attenuation", "constant, linear and quadratic attenuation", 0)                \
   X(SmoothWindow, SMOOTH_WINDOW, "smooth window", "ranges that fade as (1 - (d/r)^4)^2", 0)                  \
   X(KhrWindow, KHR_WINDOW, "KHR window", "ranges that fade as 1 - (d/r)^4", 0)                               \

@@ -144,6 +144,9 @@ enum { kPointLight = 0, kDirectionalLight = 1, kSpotLight = 2 };
 #define kNoShadow 0xffffffffu
 #define kExactShadow 0xfffffffeu
 
+// Floats of a luminaire, and of an axis of its profile before the lines (profile.clh).
+enum { kLuminaireFloats = 12, kAxisHeader = 4 };
+
 // How many lights' contributions to a pixel are added one by one at most, see long_sum.clh.
 enum { kSumBlock = 128 };
 
@@ -154,7 +157,7 @@ typedef struct {
   float4 direction;    // xyz unit, the way a spot shines; w: cosine of its cutoff
   float4 diffuse;      // rgb; w: spot exponent
   float4 specular;     // rgb; w: scale of the cone ramp, 1 / (cos inner − cos cutoff)
-  float4 ambient;      // rgb; w: unused, 0
+  float4 ambient;      // rgb; w: the number of its luminaire + 1 (profile.clh); 0: it has none
   float4 attenuation;  // constant, linear (1/m), quadratic (1/m²); w: Light::cell
   uint kind;           // kPointLight …
   uint khr_window;     // 1: the range window is 1 − (d/r)⁴; 0: its square

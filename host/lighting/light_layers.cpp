@@ -73,6 +73,7 @@ LightSet layerLights(OpenedDevice& device, const Scene& scene, const LightSet& l
     if (!lights.beam_lights.empty()) set.beam_lights.push_back(lights.beam_lights[i]);
   }
   finishLightSet(device, set);
+  set.luminaire_buffer = lights.luminaire_buffer;
   return set;
 }
 

@@ -4,6 +4,7 @@
 
 #include "lighting/bounded_lights.hpp"
 #include "lights/light_use.hpp"
+#include "lights/luminaires.hpp"
 
 namespace luciole {
 namespace {
@@ -41,6 +42,8 @@ void prepareLightSet(OpenedDevice& device, const Scene& scene, const Camera& cam
         return !isSummed(lightUse(scene.lights[light], useConditions(settings)), features);
       });
     set.lights = prepareLights(scene, set.order, camera, lighting.maps.host.map_of_light);
+    if (features.has(Feature::kProfiles))
+      set.luminaires = setLuminaires(scene, camera, set.order, set.lights);
     if (lighting.features.has(Feature::kExact))
       for (std::size_t i = 0; i < set.order.size(); ++i) {
         const bool casts = shadowWay(scene, set.order[i], settings) == ShadowWay::kBeams;

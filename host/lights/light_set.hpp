@@ -40,10 +40,12 @@ struct LightSet {
   RawArray<ShadeLight> lights;         ///< those that are summed by themselves, in the order of a Z curve
   std::vector<std::uint32_t> order;    ///< the scene's index of each
   std::vector<BeamLight> beam_lights;  ///< one for each, with Feature::kExact only
+  RawArray<float> luminaires;          ///< of these lights and their profiles, see setLuminaires()
   LightTree tree;
   ClusterSet clusters;
   SampledSet samples, directions;
   Buffer<const ShadeLight> light_buffer;
+  Buffer<const float> luminaire_buffer;  ///< of a layer: the picture's
   Buffer<const float> tree_buffer;
   Buffer<const BeamLight> beam_buffer;
 

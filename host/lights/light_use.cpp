@@ -23,7 +23,7 @@ bool isKnownByRays(const Light& light, ShadowMethod shadows) {
 }  // namespace
 
 const char* reasonName(LightUse use) {
-  static constexpr const char* kNames[]{"none",   "none",  "none",        "model",   "kind",
+  static constexpr const char* kNames[]{"none",   "none",  "none",        "model",   "kind", "profile",
                                         "shadow", "range", "attenuation", "ambient", "place"};
   static_assert(std::size(kNames) == kLightUses);
   return kNames[std::size_t(use)];
@@ -39,6 +39,7 @@ bool isCosineLobe(const Light& light) {
 LightUse lightUse(const Light& light, const UseConditions& conditions) {
   if (conditions.model != Model::kPhong && conditions.model != Model::kBlinnPhong) return LightUse::kByModel;
   if (light.kind == LightKind::kSpot && !isCosineLobe(light)) return LightUse::kByKind;
+  if (light.luminaire >= 0) return LightUse::kByProfile;
   const bool casts = light.shadow && conditions.shadows != ShadowMethod::kOff;
   if (casts && !isKnownByRays(light, conditions.shadows)) return LightUse::kByShadow;
   if (light.kind == LightKind::kDirectional)

@@ -20,6 +20,7 @@ enum class LightUse : std::uint8_t {
   kSampledDirection,  ///< the same of a directional light
   kByModel,           ///< not all surfaces have Phong's model, nor have all Blinn's
   kByKind,            ///< it is a spot, and no cosine lobe (isCosineLobe)
+  kByProfile,         ///< it is a luminaire with a profile
   kByShadow,          ///< its shadow is that of a map, or of a light of a size
   kByRange,           ///< its range is finite
   kByAttenuation,     ///< it doesn't fall off as 1 / (q d²)

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 #include "gbuffer/packed_normal.hpp"
 #include "gbuffer/tangent_plane.hpp"
@@ -49,7 +51,54 @@ double spotEffect(const Light& light, double cosine) {
   return ramp * ramp;
 }
 
-Incoming incomingLight(const Light& light, const glm::dvec3& position) {
+/// The entry of a table's axis at or before an angle, and how far it is from there to the next.
+std::pair<std::size_t, double> entryAt(const std::vector<double>& angles, double angle) {
+  const auto next = std::upper_bound(angles.begin() + 1, angles.end() - 1, angle);
+  const auto i = std::size_t(next - angles.begin()) - 1;
+  return {i, std::clamp((angle - angles[i]) / (angles[i + 1] - angles[i]), 0.0, 1.0)};
+}
+
+/// A profile's light in a unit direction, over its peak. axis: unit, the way that the luminaire shines.
+double profileShare(const Luminaire& luminaire, const glm::dvec3& axis, const glm::dvec3& direction) {
+  const LightProfile& profile = *luminaire.profile;
+  glm::dvec3 up = glm::cross(axis, glm::cross(unitOrZero(luminaire.up), axis));
+  if (glm::length(up) < 1e-6)
+    up = glm::cross(axis,
+                    glm::cross(std::abs(axis.x) < 0.8 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0), axis));
+  up = unitOrZero(up);
+  const double ahead = glm::dot(direction, axis), upwards = glm::dot(direction, up),
+               right = glm::dot(direction, glm::cross(axis, up));
+  double polar = 0, azimuth = 0;
+  switch (profile.type) {
+    case PhotometricType::kC:  // γ and C
+      polar = std::atan2(std::hypot(upwards, right), ahead);
+      azimuth = std::atan2(-right, upwards);
+      break;
+    case PhotometricType::kA:  // a right angle less V, and H
+      polar = std::atan2(std::hypot(ahead, right), upwards);
+      azimuth = std::atan2(right, ahead);
+      break;
+    case PhotometricType::kB:  // a right angle less H, and V
+      polar = std::atan2(std::hypot(ahead, upwards), right);
+      azimuth = std::atan2(upwards, ahead);
+      break;
+  }
+  // What rounding puts outside counts as inside.
+  constexpr double kTurn = 2 * std::numbers::pi, kSlack = 1e-7;
+  if (azimuth < profile.azimuth.front() - kSlack) azimuth += kTurn;
+  if (polar < profile.polar.front() - kSlack || polar > profile.polar.back() + kSlack ||
+      azimuth > profile.azimuth.back() + kSlack || !(profile.peak > 0))
+    return 0;
+  const auto [i, below] = entryAt(profile.polar, polar);
+  const auto [j, beside] = entryAt(profile.azimuth, azimuth);
+  const auto row = [&](std::size_t at) {
+    const float* entry = &profile.candela[at * profile.azimuth.size() + j];
+    return (1 - beside) * double(entry[0]) + beside * double(entry[1]);
+  };
+  return ((1 - below) * row(i) + below * row(i + 1)) / profile.peak;
+}
+
+Incoming incomingLight(const Scene& scene, const Light& light, const glm::dvec3& position) {
   if (light.kind == LightKind::kDirectional) return {unitOrZero(-light.direction), 1.0};
   const glm::dvec3 to_light_center = light.position - position;
   const double distance = glm::length(to_light_center);
@@ -57,6 +106,9 @@ Incoming incomingLight(const Light& light, const glm::dvec3& position) {
   Incoming incoming{unitOrZero(to_light_center), attenuation(light, distance) * rangeWindow(light, distance)};
   if (light.kind == LightKind::kSpot)
     incoming.share *= spotEffect(light, glm::dot(-incoming.to_light, unitOrZero(light.direction)));
+  if (light.luminaire >= 0)
+    incoming.share *= profileShare(scene.luminaires[std::size_t(light.luminaire)],
+                                   unitOrZero(light.direction), -incoming.to_light);
   return incoming;
 }
 
@@ -156,7 +208,7 @@ static void eachLightTerm(const Scene& scene, const Camera& camera, const Surfac
       unitOrZero(camera.orthographic ? backward(camera) : eyePosition(camera) - point.position);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    const Incoming incoming = incomingLight(light, point.position);
+    const Incoming incoming = incomingLight(scene, light, point.position);
     if (incoming.share == 0) continue;
     LightTerm term;
     term.light = i;

@@ -140,7 +140,7 @@ void poseScene(Scene& scene, double frame) {
   }
   for (Attachment& attachment : animation.attached_lights) {
     Light& light = scene.lights[attachment.index];
-    setLightShown(attachLight(placeOf(attachment), light).empty(), light, attachment);
+    setLightShown(attachLight(placeOf(attachment), scene.luminaires, light).empty(), light, attachment);
   }
   for (const CameraMotion& motion : animation.cameras) {
     const std::string fault = poseCamera(motion, frame, scene.cameras[motion.camera]);
@@ -262,12 +262,16 @@ std::string attachCamera(const glm::dmat4& node_to_world, Camera& camera) {
   return "";
 }
 
-std::string attachLight(const glm::dmat4& node_to_world, Light& light) {
+std::string attachLight(const glm::dmat4& node_to_world, std::vector<Luminaire>& luminaires, Light& light) {
   if (glm::dmat3(node_to_world) == glm::dmat3(0.0)) return "its scale is 0";
   light.position = glm::dvec3(node_to_world[3]);
-  if (light.kind == LightKind::kPoint) return "";
-  const glm::dvec3 back(node_to_world[2]);
+  if (light.kind == LightKind::kPoint && light.luminaire < 0) return "";
+  const glm::dvec3 back(node_to_world[2]), right(node_to_world[0]);
   if (!hasDirection(back)) return "its scale leaves a light no direction";
+  if (light.luminaire >= 0) {
+    if (!hasDirection(right)) return "its scale leaves a luminaire no direction";
+    luminaires[std::size_t(light.luminaire)].up = glm::normalize(right);
+  }
   light.direction = -glm::normalize(back);
   return "";
 }

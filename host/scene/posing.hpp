@@ -2,6 +2,7 @@
 
 #include <glm/glm.hpp>
 #include <string>
+#include <vector>
 
 #include "luciole/pose.hpp"
 
@@ -34,7 +35,8 @@ glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& 
 /// Places a camera or light that is attached to a node: it looks along the node's −z. Wrong: a scale of 0
 /// that leaves it no direction or hides a light.
 std::string attachCamera(const glm::dmat4& node_to_world, Camera& camera);
-std::string attachLight(const glm::dmat4& node_to_world, Light& light);
+/// luminaires: of the scene. The light's own, which no other light may have, is turned to the node's +x.
+std::string attachLight(const glm::dmat4& node_to_world, std::vector<Luminaire>& luminaires, Light& light);
 
 /// Whether all 16 elements are finite.
 bool isFinite(const glm::dmat4& matrix);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <unordered_map>
 #include <vector>
 
 #include "base/random.hpp"
@@ -28,6 +29,7 @@ struct IsPacked<glm::mat<Columns, Rows, T>> : std::true_type {};
 
 struct Digest {
   std::uint64_t state = 0;
+  std::unordered_map<const void*, std::uint64_t> of_shared = {};  ///< what many share is read once
 
   /// Mixes eight bytes into the state. The new state is a bijection of the word for each old state, and of
   /// the old state for each word, and every bit of both matters.
@@ -77,7 +79,14 @@ struct Digest {
   template <class T>
   void addField(const std::shared_ptr<const T>& value) {
     add(value != nullptr);
-    if (value) addField(*value);
+    if (!value) return;
+    const auto [seen, is_new] = of_shared.emplace(value.get(), 0);
+    if (is_new) {
+      Digest own;
+      own.addField(*value);
+      seen->second = own.state;
+    }
+    add(seen->second);
   }
 };
 

@@ -46,15 +46,16 @@ void withFields(T& object, Visit&& visit) {
 }
 template <Is<Light> T, class Visit>
 void withFields(T& light, Visit&& visit) {
-  auto& [kind, luminaire, position, direction, ambient, diffuse, specular, attenuation, range, window,
-         falloff, cutoff, inner_cone, exponent, shadow, radius, half_angle, group, cell, name] = light;
-  visit(kind, luminaire, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff,
-        cutoff, inner_cone, exponent, shadow, radius, half_angle, group, cell, name);
+  auto& [kind, over_pi, luminaire, position, direction, ambient, diffuse, specular, attenuation, range,
+         window, falloff, cutoff, inner_cone, exponent, shadow, radius, half_angle, group, cell, name] =
+      light;
+  visit(kind, over_pi, luminaire, position, direction, ambient, diffuse, specular, attenuation, range, window,
+        falloff, cutoff, inner_cone, exponent, shadow, radius, half_angle, group, cell, name);
 }
 template <Is<LightProfile> T, class Visit>
 void withFields(T& profile, Visit&& visit) {
-  auto& [name] = profile;
-  visit(name);
+  auto& [name, type, polar, azimuth, candela, peak, lumens, lamp_lumens] = profile;
+  visit(name, type, polar, azimuth, candela, peak, lumens, lamp_lumens);
 }
 template <Is<Luminaire> T, class Visit>
 void withFields(T& luminaire, Visit&& visit) {

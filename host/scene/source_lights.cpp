@@ -32,6 +32,7 @@ void addEmitter(const glm::dvec3& place, const glm::dvec3& direction, const glm:
   light.cutoff = glm::pi<double>() / 2;
   light.exponent = 1;
   light.cell = float(area);
+  light.over_pi = true;
   lights.push_back(light);
 }
 
@@ -84,6 +85,7 @@ void addSky(LightSource& source, const Light& like, std::vector<Light>& lights) 
     light.direction = -glm::dvec3(cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x);
     light.diffuse = light.specular = cell.light * source.radiance;
     light.cell = cell.solid_angle;
+    light.over_pi = true;
     lights.push_back(light);
   }
 }

@@ -279,7 +279,40 @@ bool areNegative(const glm::vec<N, float>& value) {
 // Of lights and fog many numbers may be any: shading says what each gives, and it is finite
 // (tests/pictures).
 
-std::string lightFault(const Light& light, std::size_t groups) {
+std::string luminaireFault(const Luminaire& luminaire) {
+  if (!luminaire.profile) return "profile: is missing";
+  if (!(glm::length(luminaire.up) > 0 && std::isfinite(glm::length(luminaire.up))))
+    return "up: has no direction";
+  const LightProfile& profile = *luminaire.profile;
+  if (!isOneOf(profile.type, PhotometricType::kA))
+    return wrong("profile.type", int(profile.type), "a PhotometricType");
+  constexpr double kPi = 3.14159265358979324, kSlack = 1e-6;
+  const auto ascends = [](const std::vector<double>& angles) {
+    return angles.size() >= 2 && std::adjacent_find(angles.begin(), angles.end(), [](double a, double b) {
+                                   return !(a < b);
+                                 }) == angles.end();
+  };
+  const std::vector<double>&polar = profile.polar, &azimuth = profile.azimuth;
+  if (!ascends(polar) || !(polar.front() >= -kSlack && polar.back() <= kPi + kSlack))
+    return "profile.polar: expected two or more radians, ascending from 0 to pi";
+  if (!ascends(azimuth) || !(azimuth.front() >= -kPi - kSlack && azimuth.front() <= kPi / 2 + kSlack &&
+                             azimuth.back() - azimuth.front() <= 2 * kPi + kSlack))
+    return "profile.azimuth: expected two or more radians, ascending over 2 pi at most";
+  if (std::string fault = sizeFault("profile.candela", profile.candela.size(), polar.size() * azimuth.size(),
+                                    "all pairs of the angles");
+      !fault.empty())
+    return fault;
+  const auto wrong_one = std::find_if(profile.candela.begin(), profile.candela.end(), [&](float candela) {
+    return !(candela >= 0 && double(candela) <= profile.peak);
+  });
+  if (wrong_one == profile.candela.end() && std::isfinite(profile.peak)) return "";
+  return "profile.candela: expected numbers from 0 to its peak";
+}
+
+/// luminaires, groups: how many there are.
+std::string lightFault(const Light& light, std::size_t luminaires, std::size_t groups) {
+  if (!isIndexOrNone(light.luminaire, luminaires))
+    return wrongIndex("luminaire", light.luminaire, "luminaires", luminaires);
   if (!isOneOf(light.kind, LightKind::kSpot)) return wrong("kind", int(light.kind), "a LightKind");
   for (const auto& [field, color] : {std::pair("ambient", &light.ambient),
                                      {"diffuse", &light.diffuse},
@@ -549,8 +582,11 @@ void validateScene(const Scene& scene) {
   });
   checkAll(scene, "objects", scene.objects,
            [&](std::size_t i) { return objectFault(scene, scene.objects[i]); });
-  checkAll(scene, "lights", scene.lights,
-           [&](std::size_t i) { return lightFault(scene.lights[i], scene.light_groups.size()); });
+  checkAll(scene, "luminaires", scene.luminaires,
+           [&](std::size_t i) { return luminaireFault(scene.luminaires[i]); });
+  checkAll(scene, "lights", scene.lights, [&](std::size_t i) {
+    return lightFault(scene.lights[i], scene.luminaires.size(), scene.light_groups.size());
+  });
   if (scene.source_lights > scene.lights.size())
     fail(scene, "", wrongIndex("source_lights", scene.source_lights, "lights", scene.lights.size()));
   checkAll(scene, "cameras", scene.cameras, [&](std::size_t i) { return cameraFault(scene.cameras[i]); });

@@ -135,6 +135,7 @@ void addLight(const Light& light, FeatureSet& features) {
     if (light.exponent != 0) features.set(Feature::kSpotExponent);
   }
   if (light.kind != LightKind::kDirectional) {
+    if (light.luminaire >= 0) features.set(Feature::kProfiles);
     if (light.attenuation != glm::vec3(1, 0, 0)) features.set(Feature::kAttenuation);
     if (std::isfinite(light.range))
       features.set(light.window == RangeWindow::kSmooth ? Feature::kSmoothWindow : Feature::kKhrWindow);

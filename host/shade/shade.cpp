@@ -41,6 +41,7 @@ void shade(OpenedDevice& device, const ShadeProgram& program, const ShadeArgumen
           {"model", gbuffer.model},
           {"tangent", gbuffer.tangent},
           {"lights", arguments.lights},
+          {"luminaires", arguments.luminaires},
           {"list_starts", arguments.lists.starts},
           {"list", arguments.lists.list},
           {"shadow_maps", arguments.shadow_maps},

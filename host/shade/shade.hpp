@@ -36,6 +36,7 @@ struct ShadeArguments {
   const ShadeFrame& frame;
   const GBufferBuffers& gbuffer;
   Buffer<const ShadeLight> lights;  ///< frame.light_count
+  Buffer<const float> luminaires;   ///< LightSet::luminaires, with Feature::kProfiles only
   const LightLists& lists;          ///< with Feature::kLightLists only
   Buffer<const ShadowMap> shadow_maps;
   Buffer<const ShadowFace> shadow_faces;

@@ -21,6 +21,7 @@ struct ShadeTilesArguments {
   int tiles_x, tiles_y;             ///< of the G-buffer
   TileBlock block;                  ///< the picture doesn't depend on it
   Buffer<const ShadeLight> lights;  ///< frame.light_count
+  Buffer<const float> luminaires;   ///< see ShadeArguments
   Buffer<const float> tree;         ///< see LightTree
   std::size_t tree_stride;          ///< floats
   Buffer<float> image;              ///< out: planes r, g, b

@@ -1,7 +1,7 @@
 // Shading: lights a G-buffer by light lists, or without lists by all lights.
 //
 //   I = ambient·Ka + emission
-//       + Σ lights falloff·spot·( Ia·Ka + visibility·( Id·Kd·max(N·L,0) + Is·Ks·(R·V)ⁿ ) )
+//       + Σ lights falloff·spot·profile·( Ia·Ka + visibility·( Id·Kd·max(N·L,0) + Is·Ks·(R·V)ⁿ ) )
 //
 // seen through fog. Other models than Phong's change the inner brackets (reflect()). The sums over the lights
 // leave the material out: it is multiplied once at the end.
@@ -25,8 +25,8 @@
 
 // Lights ROWS rows. first: their first pixel. All else: see shade().
 WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight* lights,
-                     __global const uint* list_starts, __global const ListEntry* list, Shadows shadows,
-                     uint first, __global float* image) {
+                     __global const float* luminaires, __global const uint* list_starts,
+                     __global const ListEntry* list, Shadows shadows, uint first, __global float* image) {
   uint tile = first / kTilePixels;
   uint stride = frame.plane_stride;
   uint entry = LIGHT_LISTS ? list_starts[tile] : 0;
@@ -68,7 +68,7 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight*
         light[k] = lights + light_of[at];
         met_by[k] = EXACT ? entry_of[at] : 0;
       }
-      add_lights(ABREAST, pixels, light, pairs - pair, met_by, &shadows, frame.model, long_sums);
+      add_lights(ABREAST, pixels, light, pairs - pair, met_by, luminaires, &shadows, frame.model, long_sums);
     }
   }
 
@@ -78,22 +78,24 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight*
 
 // Planes have frame.plane_stride elements each. specular: r, g, b and the shininess; surface_normal: as
 // packNormal() packs it; lift: metres; model: see load_models(); tangent: see Planes. list_starts, list: see
-// cull.cl; without LIGHT_LISTS every pixel meets all frame.light_count lights. image: planes r, g, b, and
-// with OUTPUT_SHADOW a fourth: the mean visibility, in [0, 1], of the lights with shadows that reach the
-// pixel's front. faulty_pixels: see Planes.
+// cull.cl; luminaires: see profile.clh; without LIGHT_LISTS every pixel meets all frame.light_count lights.
+// image: planes r, g, b, and with OUTPUT_SHADOW a fourth: the mean visibility, in [0, 1], of the lights with
+// shadows that reach the pixel's front. faulty_pixels: see Planes.
 KERNEL void shade(ShadeFrame frame, __global const float* position, __global const float* normal,
                   __global const float* diffuse, __global const float* specular,
                   __global const float* ambient, __global const float* emission,
                   __global const uint* surface_normal, __global const float* lift, __global const uint* model,
                   __global const uint* tangent, __global const ShadeLight* lights,
-                  __global const uint* list_starts, __global const ListEntry* list,
-                  __global const ShadowMap* shadow_maps, __global const ShadowFace* shadow_faces,
-                  __global const ShadowTexel* shadow_texels, __global const uint* pair_bits,
-                  __global const uint* ray_bits, __global const uint* first_share,
-                  __global const float* shares, __global float* image, __global uint* faulty_pixels) {
+                  __global const float* luminaires, __global const uint* list_starts,
+                  __global const ListEntry* list, __global const ShadowMap* shadow_maps,
+                  __global const ShadowFace* shadow_faces, __global const ShadowTexel* shadow_texels,
+                  __global const uint* pair_bits, __global const uint* ray_bits,
+                  __global const uint* first_share, __global const float* shares, __global float* image,
+                  __global uint* faulty_pixels) {
   Planes planes = {position,       normal, diffuse, specular,      ambient, emission,
                    surface_normal, lift,   model,   faulty_pixels, tangent};
   Shadows shadows = {shadow_maps, shadow_faces, shadow_texels, frame.texel_count,
                      pair_bits,   ray_bits,     first_share,   shares};
-  shade_rows(frame, planes, lights, list_starts, list, shadows, work_item() * (ROWS * LANES), image);
+  shade_rows(frame, planes, lights, luminaires, list_starts, list, shadows, work_item() * (ROWS * LANES),
+             image);
 }

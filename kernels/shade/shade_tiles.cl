@@ -87,6 +87,7 @@ typedef struct {
   const ShadeFrame* frame;
   const Planes* planes;
   __global const ShadeLight* lights;
+  __global const float* luminaires;
   __global float* image;
   bool begun;  // the rows' sums were kept from earlier candidates
   bool last;   // no candidates follow
@@ -135,7 +136,7 @@ INLINE void add_to_row(const uint abreast, const Task* task, Pixels* row, const 
     lights[k] = task->lights + light[k];
     entry[k] = 0;
   }
-  add_lights(abreast, rows, lights, abreast, entry, &none, task->frame->model, long_sums);
+  add_lights(abreast, rows, lights, abreast, entry, task->luminaires, &none, task->frame->model, long_sums);
 }
 
 // Lights a row of pixels. kept: the row's sums between one set of candidates and the next.
@@ -202,8 +203,8 @@ INLINE void shade_tile(const Task* task, uint first, uint next, uint later, uint
 
 // Lights a block of tiles. first_pixel: of each of them. The rest: see shade_tiles().
 WORK void shade_block(ShadeTilesFrame frame, Planes planes, __global const float* tree,
-                      __global const ShadeLight* lights, const uint* first_pixel, uint tiles,
-                      __global float* image, __global uint* counts) {
+                      __global const ShadeLight* lights, __global const float* luminaires,
+                      const uint* first_pixel, uint tiles, __global float* image, __global uint* counts) {
   uint width = frame.block_width;
   Walk walk;
   walk.tiles.position = planes.position;
@@ -212,7 +213,7 @@ WORK void shade_block(ShadeTilesFrame frame, Planes planes, __global const float
   walk.tiles.group_pixels = kGroupPixels;
   LightSums kept[kTilePixels / LANES];
   Candidates candidates;
-  Task task = {&frame.shade, &planes, lights, image, false, false};
+  Task task = {&frame.shade, &planes, lights, luminaires, image, false, false};
   uint step = tiles;                                   // tiles that share a walk
   uint last = frame.shade.plane_stride - kTilePixels;  // the picture's last tile
   for (uint from = 0; from < tiles;) {
@@ -251,8 +252,8 @@ KERNEL void shade_tiles(ShadeTilesFrame frame, __global const float* position, _
                         __global const float* ambient, __global const float* emission,
                         __global const uint* surface_normal, __global const uint* model,
                         __global const uint* tangent, __global const float* tree,
-                        __global const ShadeLight* lights, __global float* image, __global uint* counts,
-                        __global uint* faulty_pixels) {
+                        __global const ShadeLight* lights, __global const float* luminaires,
+                        __global float* image, __global uint* counts, __global uint* faulty_pixels) {
   Planes planes = {position,       normal, diffuse, specular,      ambient, emission,
                    surface_normal, 0,      model,   faulty_pixels, tangent};
   uint width = frame.block_width, height = frame.block_height;
@@ -266,5 +267,5 @@ KERNEL void shade_tiles(ShadeTilesFrame frame, __global const float* position, _
   uint first_pixel[kBlockTiles];
   for (uint tile = 0; tile < tiles; ++tile)
     first_pixel[tile] = ((block_y + tile / columns) * frame.tiles_x + block_x + tile % columns) * kTilePixels;
-  shade_block(frame, planes, tree, lights, first_pixel, tiles, image, counts);
+  shade_block(frame, planes, tree, lights, luminaires, first_pixel, tiles, image, counts);
 }

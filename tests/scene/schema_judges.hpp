@@ -18,6 +18,7 @@
 
 #include "luciole/error.hpp"
 #include "scene/json/json_scene.hpp"
+#include "scene/profiles/profile_files.hpp"
 #include "scene/small_scenes.hpp"
 #include "shared_files.hpp"
 
@@ -137,6 +138,7 @@ class Judges {
                         "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
         "extensions": {"KHR_materials_variants": {"variants": [{"name": "new"}]}}})";
     std::ofstream(folder_ / "sky.ppm") << "P3 2 1 255 255 255 255 128 128 128\n";
+    std::ofstream(folder_ / "lamp.ies") << iesText({});
     std::ofstream(folder_ / "lamps.csv") << "1,2,3,1,1,1,4\n5,6,7,1,1,1,\n8,9,10,1,1,1,\n";
     const json text = asSchemasSeeIt(schemaText());
     valijson::SchemaParser(valijson::SchemaParser::kDraft7)

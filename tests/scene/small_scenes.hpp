@@ -83,9 +83,17 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
       {"type": "disc", "position": [0, 3, 0], "direction": [0, -1, 0], "interpolation": "smooth",
        "keys": [{"frame": 1, "intensity": 0}, {"frame": 5, "color": 2}]},
       {"type": "disc", "position": [0, 3, 0], "direction": [1, 0, 0], "enabled": false}]})"},
-    {"Glow", R"({"materials": {"lamp": {"emission": 3, "emits": 4}, "screen": {"emission": [1, 2, 3], "emits": false}},
+    {"Glow",
+     R"({"materials": {"lamp": {"emission": 3, "emits": 4}, "screen": {"emission": [1, 2, 3], "emits": false}},
       "objects": [{"primitive": "plane", "segments": 1, "material": "lamp"},
                   {"primitive": "box", "material": "screen", "emits": true}]})"},
+    {"Profiles", R"({"lights": [
+      {"type": "point", "position": [0, 4, 0], "profile": "lamp.ies", "up": [0, 0, 1], "lumens": 900, "intensity": 0.5,
+       "keys": [{"frame": 1, "intensity": 1}]},
+      {"type": "point", "position": [0, 4, 0], "profile": "lamp.ies", "direction": [0, -1, 1], "candela": 2,
+       "keys": [{"frame": 1, "direction": [0, -1, 0]}]},
+      {"type": "spot", "position": [0, 4, 0], "profile": "lamp.ies", "target": [0, 0, 0], "cutoff": 60},
+      {"type": "point", "position": [0, 4, 0], "lumens": 800}]})"},
     {"LightFields", R"({"objects": [{"primitive": "plane", "segments": 1}], "light_fields": [
       {"count": 3, "seed": 7, "min": [0, 0, 0], "max": [1, 2, 3], "color": [1, 0.5, 0.2], "intensity": [1, 2], "range": [0.5, 1]},
       {"count": 3, "shape": "box", "min": [0, 0, 0], "max": [1, 1, 1], "colors": [1, [1, 0, 0]], "intensity": 2, "range": 2},
@@ -160,7 +168,8 @@ inline json smallVersion(const std::filesystem::path& path) {
       if (field.contains("csv")) field["csv"] = "lamps.csv";
   if (scene.contains("lights"))
     for (json& light : scene["lights"])
-      if (light.contains("image")) light["image"] = "sky.ppm";
+      for (const auto& [key, file] : {std::pair("image", "sky.ppm"), {"profile", "lamp.ies"}})
+        if (light.contains(key)) light[key] = file;
   if (scene.contains("materials")) {
     json materials = json::object();
     for (const auto& [name, material] : scene["materials"].items()) {

@@ -31,9 +31,14 @@ enum class SpotFalloff : std::uint8_t {
 /// A light of the scene. Disabled lights are dropped by the loader.
 struct Light {
   LightKind kind = LightKind::kPoint;
-  std::int32_t luminaire = -1;  ///< in Scene::luminaires: multiplies a point's or a spot's light; -1: none
-  glm::dvec3 position{0.0};     ///< world, metres; not for directional lights
-  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit, world: the way the light shines; not for point lights
+  /// The colours are over π: not candela and lux, but what makes a white surface show its luminance. So are
+  /// those of glTF's lights and of sources.
+  bool over_pi = false;
+  /// In Scene::luminaires, of points and spots: their light is multiplied by the profile's candela over its
+  /// peak, so that the colours are those of the brightest direction. −1: none.
+  std::int32_t luminaire = -1;
+  glm::dvec3 position{0.0};              ///< world, metres; not for directional lights
+  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit, world: the way that it shines; not for plain point lights
   /// Colours, linear, with the intensity multiplied in. ≥ 0 and finite. Defaults as the course text gives
   /// OpenGL's.
   glm::vec3 ambient{0.0f};
@@ -59,20 +64,41 @@ struct Light {
   bool operator==(const Light&) const = default;
 };
 
-/// How many lux a colour of 1 stands for, of a light that reaches a surface by so much: the lights of
-/// sources, whose colours are of radiance, give a diffuse colour its share of 1/π, and others all.
-inline float luxOfColor(const Light& light) { return light.cell > 0 ? 3.14159265f : 1.0f; }
+/// How many lux a colour of 1 stands for, of a light that reaches a surface by so much: see Light::over_pi.
+inline float luxOfColor(const Light& light) { return light.over_pi ? 3.14159265f : 1.0f; }
 
-/// How much light a luminaire gives in each direction.
+/// By which two angles a file says where light goes (IES LM-63). Of a luminaire that shines along a, whose up
+/// u is perpendicular to that and whose left is l = u × a:
+///
+///     type  pole  azimuth 0  90 degrees
+///     C     a     u          l           γ is the angle to the pole, C the azimuth
+///     A     u     a          −l          V is a right angle less the angle to the pole, H the azimuth
+///     B     −l    a          u           H is a right angle less the angle to the pole, V the azimuth
+enum class PhotometricType : std::uint8_t { kC, kB, kA };
+
+/// How much light a luminaire gives in each direction: a table over the angle to its pole and the azimuth,
+/// bilinear between its entries, and 0 outside. See readLightProfile().
 struct LightProfile {
   std::string name = {};  ///< the file's path, for messages
+  PhotometricType type = PhotometricType::kC;
+  /// Radians, ascending, two or more of each. polar: from 0 to π; azimuth: a range of up to 2π, which begins
+  /// at −π or later and at π/2 at the latest.
+  std::vector<double> polar = {}, azimuth = {};
+  std::vector<float> candela = {};  ///< ≥ 0 and finite; [polar][azimuth]
+  double peak = 0.0;                ///< candela, the largest entry
+  double lumens = 0.0;              ///< of the table: its integral over all directions
+  double lamp_lumens = 0.0;         ///< of the lamps, as the file says; 0: it doesn't
 };
 
 /// A luminaire: a profile and how it is turned. Its axis is Light::direction.
 struct Luminaire {
   std::shared_ptr<const LightProfile> profile = {};
-  glm::dvec3 up{0.0, 1.0, 0.0};  ///< world: about the way of the profile's plane C0; not along the axis
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< world; any other direction takes its place where the axis is along it
 };
+
+/// The profile in a file of IES LM-63 (1986 to 2019), or of EULUMDAT if its name ends in .ldt. What is left
+/// out or repaired is told in `warnings`. Throws InputError.
+std::shared_ptr<const LightProfile> readLightProfile(const std::string& path, std::vector<Warning>& warnings);
 
 /// A level of a Sky: row-major, texel (0,0) top left, r g b of each; linear, ≥ 0 and finite.
 struct SkyLevel {

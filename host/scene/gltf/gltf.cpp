@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "scene/gltf/gltf_objects.hpp"
 #include "scene/light_groups.hpp"
 #include "scene/posing.hpp"
+#include "scene/profiles/profile_table.hpp"
 
 namespace luciole {
 namespace {
@@ -85,9 +87,9 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
 
 /// The group that a light's node, or else the light, names: a text "group" in its extras. Extras are
 /// anybody's, so one that can't be a group's name is told and left out.
-std::uint32_t groupOf(const GltfModel& model, int node, const GltfLight& light, LightGroupNumbers& groups,
-                      Scene& scene) {
-  for (const std::optional<std::string>& name : {model.file.nodes[std::size_t(node)].group, light.group}) {
+std::uint32_t groupOf(const GltfModel& model, int node, const std::optional<std::string>& of_light,
+                      LightGroupNumbers& groups, Scene& scene) {
+  for (const std::optional<std::string>& name : {model.file.nodes[std::size_t(node)].group, of_light}) {
     if (!name) continue;
     const std::string fault = faultOfGroupName(*name);
     if (fault.empty()) return lightGroupNumber(*name, groups, scene);
@@ -123,6 +125,36 @@ bool setCone(const GltfModel& model, const GltfLight& source, const std::string&
   return true;
 }
 
+/// A light's colour: white without one.
+glm::vec3 colorOf(const GltfModel& model, const std::string& place, const std::vector<double>& numbers) {
+  glm::vec3 color(1);
+  if (!numbers.empty() && numbers.size() != 3)
+    warnRepaired(model, place, fmt::format("color has {} numbers, expected 3", numbers.size()), "color");
+  for (std::size_t i = 0; i < std::min<std::size_t>(numbers.size(), 3); ++i) {
+    if (numbers[i] < 0)
+      warnRepaired(model, place, fmt::format("color has {}, taken for 0", numbers[i]), "negative light");
+    color[static_cast<int>(i)] = static_cast<float>(std::max(numbers[i], 0.0));
+  }
+  return color;
+}
+
+/// Places a light and adds it to the scene. group, name: the light's own.
+void placeLight(const GltfModel& model, const PlacedNode& placed, const std::optional<std::string>& group,
+                const std::string& name, LightGroupNumbers& groups, Scene& scene, Light& light) {
+  light.over_pi = true;
+  const std::string fault = attachLight(placed.to_world, scene.luminaires, light);
+  // What moves may have a scale of 0 for a while, and is kept.
+  if (placed.moving < 0 && !fault.empty())
+    return warnLeftOut(model, nodePlace(placed.node), fault + "; left out", "light");
+  light.group = groupOf(model, placed.node, group, groups, scene);
+  const std::string& node_name = model.file.nodes[placed.node].name;
+  light.name = node_name.empty() ? name : node_name;
+  if (placed.moving >= 0)
+    scene.animation.attached_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
+                                               static_cast<std::uint32_t>(placed.moving), placed.since});
+  scene.lights.push_back(light);
+}
+
 /// KHR_lights_punctual. Its intensities are candela and lux, and its Lambertian surface reflects base colour
 /// / π; our diffuse term has no 1/π, so the light carries it: diffuse = specular = colour · intensity / π. A
 /// surface then has the radiance in cd/m² that glTF gives it. Lights cast no shadow, as glTF says nothing of
@@ -133,14 +165,7 @@ void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumber
   const std::string place = fmt::format("extensions.{}.lights[{}]", kLights, number);
   const auto kind = [&](const char* name) { return equalIgnoringCase(source.type, name); };
   Light light;
-  glm::vec3 color(1);
-  if (!source.color.empty() && source.color.size() != 3)
-    warnRepaired(model, place, fmt::format("color has {} numbers, expected 3", source.color.size()), "color");
-  for (std::size_t i = 0; i < std::min<std::size_t>(source.color.size(), 3); ++i) {
-    if (source.color[i] < 0)
-      warnRepaired(model, place, fmt::format("color has {}, taken for 0", source.color[i]), "negative light");
-    color[static_cast<int>(i)] = static_cast<float>(std::max(source.color[i], 0.0));
-  }
+  const glm::vec3 color = colorOf(model, place, source.color);
   if (source.intensity < 0)
     warnRepaired(model, place, fmt::format("intensity is {}, taken for 0", source.intensity),
                  "negative light");
@@ -165,17 +190,43 @@ void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumber
   } else {
     return;
   }
-  const std::string fault = attachLight(placed.to_world, light);
-  // What moves may have a scale of 0 for a while, and is kept.
-  if (placed.moving < 0 && !fault.empty())
-    return warnLeftOut(model, nodePlace(placed.node), fault + "; left out", "light");
-  light.group = groupOf(model, placed.node, source, groups, scene);
-  const std::string& node_name = model.file.nodes[placed.node].name;
-  light.name = node_name.empty() ? source.name : node_name;
-  if (placed.moving >= 0)
-    scene.animation.attached_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
-                                               static_cast<std::uint32_t>(placed.moving), placed.since});
-  scene.lights.push_back(light);
+  placeLight(model, placed, source.group, source.name, groups, scene, light);
+}
+
+/// EXT_lights_ies: a luminaire that shines along the node's −z, its C 0 along +x. Its candela are over π, as
+/// other lights' intensities are. profiles: of the file's profiles those that were read.
+void addLuminaire(const GltfModel& model, const PlacedNode& placed, LightGroupNumbers& groups,
+                  std::map<int, std::shared_ptr<const LightProfile>>& profiles, Scene& scene) {
+  const GltfLuminaire& node = model.file.nodes[std::size_t(placed.node)].luminaire;
+  const GltfImage& source =
+      element(model, model.file.profiles, node.profile, nodePlace(placed.node), "light profile");
+  const std::string place = profilePlace(std::size_t(node.profile));
+  std::shared_ptr<const LightProfile>& profile = profiles[node.profile];
+  if (!profile && !source.file.empty()) {
+    profile = readLightProfile(source.file, scene.warnings);
+  } else if (!profile) {
+    const std::span<const std::byte> bytes =
+        source.view >= 0 ? viewBytes(model, source.view, place) : source.bytes;
+    if (bytes.empty())
+      failGltf(model, place,
+               source.uri.empty() ? "has no file, expected uri or bufferView"
+                                  : fmt::format("there is no file '{}'", forMessage(source.uri)));
+    profile = parseLightProfile({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                                fmt::format("{}: {}", model.path, place), scene.warnings);
+  }
+  if (node.multiplier < 0)
+    warnRepaired(model, nodePlace(placed.node), fmt::format("multiplier is {}, taken for 0", node.multiplier),
+                 "negative light");
+  Light light;
+  light.attenuation = {0, 0, 1};
+  light.luminaire = static_cast<std::int32_t>(scene.luminaires.size());
+  light.diffuse = light.specular =
+      glm::min(colorOf(model, nodePlace(placed.node), node.color), glm::vec3(1)) *
+      float(std::max(node.multiplier, 0.0) * profile->peak / kPi);
+  if (!std::isfinite(light.diffuse.x + light.diffuse.y + light.diffuse.z))
+    failGltf(model, nodePlace(placed.node), "multiplier is too large");
+  scene.luminaires.push_back({profile});
+  placeLight(model, placed, std::nullopt, source.name, groups, scene, light);
 }
 
 std::string listNames(const std::vector<std::string>& names) {
@@ -228,11 +279,13 @@ void loadGltf(const std::string& path, Scene& scene, const GltfChoice& choice,
   const std::size_t before = scene.objects.size() + scene.cameras.size() + scene.lights.size();
   addGltfObjects(model, nodes, curves, scene);
   LightGroupNumbers groups = lightGroupNumbers(scene);
+  std::map<int, std::shared_ptr<const LightProfile>> profiles;
   for (const PlacedNode& placed : nodes) {
     if (!placed.shown) continue;
     const GltfNode& node = model.file.nodes[std::size_t(placed.node)];
     if (node.camera >= 0) addCamera(model, placed, scene);
     if (node.light >= 0) addLight(model, placed, groups, scene);
+    if (node.luminaire.profile >= 0) addLuminaire(model, placed, groups, profiles, scene);
   }
   if (scene.objects.size() + scene.cameras.size() + scene.lights.size() == before) {
     failGltf(model, "scene", "shows nothing, expected a mesh, a light or a camera");

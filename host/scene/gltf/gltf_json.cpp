@@ -295,22 +295,28 @@ GltfMesh parseMesh(const ObjectReader& from) {
   return mesh;
 }
 
+GltfImage parseImage(const ObjectReader& from) {
+  return {from.name(), from.text("uri"), from.index("bufferView"), {}, {}};
+}
+
 GltfNode parseNode(const ObjectReader& from) {
-  const ObjectReader extensions = from.object("extensions");
-  GltfNode node{.name = from.name(),
-                .children = from.indices("children"),
-                .mesh = from.index("mesh"),
-                .camera = from.index("camera"),
-                .skin = from.index("skin"),
-                .light = extensions.object("KHR_lights_punctual").index("light"),
-                .matrix = from.numbers("matrix"),
-                .translation = from.numbers("translation"),
-                .rotation = from.numbers("rotation"),
-                .scale = from.numbers("scale"),
-                .weights = from.numbers("weights"),
-                .hidden = !extensions.object("KHR_node_visibility").truth("visible", true),
-                .group = from.group(),
-                .extensions = {}};
+  const ObjectReader extensions = from.object("extensions"), luminaire = extensions.object("EXT_lights_ies");
+  GltfNode node{
+      .name = from.name(),
+      .children = from.indices("children"),
+      .mesh = from.index("mesh"),
+      .camera = from.index("camera"),
+      .skin = from.index("skin"),
+      .light = extensions.object("KHR_lights_punctual").index("light"),
+      .luminaire = {luminaire.index("light"), luminaire.number("multiplier", 1), luminaire.numbers("color")},
+      .matrix = from.numbers("matrix"),
+      .translation = from.numbers("translation"),
+      .rotation = from.numbers("rotation"),
+      .scale = from.numbers("scale"),
+      .weights = from.numbers("weights"),
+      .hidden = !extensions.object("KHR_node_visibility").truth("visible", true),
+      .group = from.group(),
+      .extensions = {}};
   node.extensions = from.extensions();
   return node;
 }
@@ -373,9 +379,8 @@ void parseFile(const ObjectReader& root, GltfFile& file) {
                     from.size("byteStride"), from.extensions()};
   });
   list(root, "accessors", file.accessors, parseAccessor);
-  list(root, "images", file.images, [](const ObjectReader& from) {
-    return GltfImage{from.name(), from.text("uri"), from.index("bufferView"), {}, {}};
-  });
+  list(root, "images", file.images, parseImage);
+  list(root.object("extensions").object("EXT_lights_ies"), "lights", file.profiles, parseImage);
   list(root, "samplers", file.samplers, [](const ObjectReader& from) {
     return GltfSampler{from.optionalNumber("wrapS"), from.optionalNumber("wrapT"),
                        from.optionalNumber("magFilter"), from.optionalNumber("minFilter")};

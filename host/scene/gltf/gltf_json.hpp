@@ -55,6 +55,7 @@ struct GltfAccessor {
   std::optional<GltfSparse> sparse;
 };
 
+/// A file that isn't JSON: a picture, or a luminaire's profile.
 struct GltfImage {
   std::string name, uri;  ///< uri: without the data of a data URI
   int view = -1;
@@ -123,10 +124,18 @@ struct GltfMesh {
   std::vector<double> weights;
 };
 
+/// A node's light of EXT_lights_ies.
+struct GltfLuminaire {
+  int profile = -1;
+  double multiplier = 1;
+  std::vector<double> color;
+};
+
 struct GltfNode {
   std::string name;
   std::vector<int> children;
   int mesh = -1, camera = -1, skin = -1, light = -1;
+  GltfLuminaire luminaire;
   std::vector<double> matrix, translation, rotation, scale, weights;
   bool hidden = false;               ///< with all below it (KHR_node_visibility)
   std::optional<std::string> group;  ///< a text "group" of its extras
@@ -185,6 +194,7 @@ struct GltfFile {
   std::vector<GltfAnimationEntry> animations;
   std::vector<GltfCamera> cameras;
   std::vector<GltfLight> lights;         ///< KHR_lights_punctual's
+  std::vector<GltfImage> profiles;       ///< files of EXT_lights_ies
   std::vector<std::vector<int>> scenes;  ///< their nodes
   int scene = -1;
 };

@@ -14,14 +14,21 @@
 namespace luciole {
 namespace {
 
-constexpr std::string_view kSupportedExtensions[] = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
-    "EXT_texture_webp",        "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular",  "KHR_materials_variants",
-    "KHR_materials_unlit",     "KHR_mesh_quantization",
-    "KHR_node_visibility",     "KHR_texture_transform"};
+constexpr std::string_view kSupportedExtensions[] = {"EXT_lights_ies",
+                                                     "EXT_mesh_gpu_instancing",
+                                                     "EXT_meshopt_compression",
+                                                     "EXT_texture_webp",
+                                                     "KHR_draco_mesh_compression",
+                                                     "KHR_lights_punctual",
+                                                     "KHR_materials_emissive_strength",
+                                                     "KHR_materials_ior",
+                                                     "KHR_materials_pbrSpecularGlossiness",
+                                                     "KHR_materials_specular",
+                                                     "KHR_materials_variants",
+                                                     "KHR_materials_unlit",
+                                                     "KHR_mesh_quantization",
+                                                     "KHR_node_visibility",
+                                                     "KHR_texture_transform"};
 
 bool isSupported(const std::string& extension) {
   const auto end = std::end(kSupportedExtensions);
@@ -54,6 +61,10 @@ GltfModel readGltfModel(const std::string& path, const std::vector<std::string>&
   decodeMeshopt(model);
   decodeDraco(model);
   return model;
+}
+
+std::string profilePlace(std::size_t index) {
+  return fmt::format("extensions.EXT_lights_ies.lights[{}]", index);
 }
 
 std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, const std::string& place) {

@@ -48,6 +48,9 @@ const T& element(const GltfModel& model, const std::vector<T>& list, int index, 
 /// The bytes of a buffer view, which the model owns. Throws InputError where it reaches past its buffer.
 std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, const std::string& place);
 
+/// Where a profile of EXT_lights_ies stands in the file.
+std::string profilePlace(std::size_t index);
+
 /// Whether an image's file doesn't exist or is empty.
 bool isMissing(const GltfImage& image);
 

@@ -174,11 +174,11 @@ void checkLengths(const GltfModel& model) {
   }
 }
 
-void findImage(std::size_t index, const SearchFolders& where, GltfModel& model) {
-  GltfImage& image = model.file.images[index];
+/// place: the image's, for errors.
+void findImage(const std::string& place, const SearchFolders& where, GltfModel& model, GltfImage& image) {
   if (image.uri.empty()) return;
   if (isData(image.uri)) {
-    image.bytes = keep(dataOf(image.uri, fmt::format("images[{}].uri", index), model), model);
+    image.bytes = keep(dataOf(image.uri, place + ".uri", model), model);
     image.uri.clear();
     return;
   }
@@ -233,7 +233,10 @@ GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
 void findResources(std::string_view binary, const std::vector<std::string>& search, GltfModel& model) {
   const SearchFolders where{std::filesystem::path(model.path).parent_path().string(), search};
   for (std::size_t i = 0; i < model.file.buffers.size(); ++i) findBuffer(i, binary, where, model);
-  for (std::size_t i = 0; i < model.file.images.size(); ++i) findImage(i, where, model);
+  for (std::size_t i = 0; i < model.file.images.size(); ++i)
+    findImage(fmt::format("images[{}]", i), where, model, model.file.images[i]);
+  for (std::size_t i = 0; i < model.file.profiles.size(); ++i)
+    findImage(profilePlace(i), where, model, model.file.profiles[i]);
   checkLengths(model);
 }
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -44,32 +46,81 @@ void readOwnColors(const JsonNode& node, Light& light) {
   if (const auto n = find(node, "specular")) light.specular = readColor(*n);
 }
 
-float readOwnIntensity(const JsonNode& node) {
+/// brightness: see readBrightness().
+float readOwnIntensity(const JsonNode& node, double brightness) {
   const auto n = find(node, "intensity");
-  return n ? static_cast<float>(readNumber(*n, 0, kLargestNumber)) : 1.0f;
+  return static_cast<float>((n ? readNumber(*n, 0, kLargestNumber) : 1.0) * brightness);
 }
 
-void readColors(const JsonNode& node, Light& light) {
+void readColors(const JsonNode& node, double brightness, Light& light) {
   readOwnColors(node, light);
-  const float intensity = readOwnIntensity(node);
+  const float intensity = readOwnIntensity(node, brightness);
   light.ambient *= intensity;
   light.diffuse *= intensity;
   light.specular *= intensity;
 }
 
-/// Reads a spot's direction and its falloff. With OpenGL's cutoff of 180° it becomes a point light, whatever
-/// its exponent and direction; a direction or target is required all the same.
-void readSpot(const JsonNode& node, Light& light) {
+/// Reads a direction, or a target. Returns whether there is one.
+bool readAim(const JsonNode& node, Light& light) {
   const auto direction = find(node, "direction");
   const auto target = find(node, "target");
   if (direction && target) refuse(*target, "expected either \"direction\" or \"target\", got both");
-  if (!direction && !target) refuse(node, "\"direction\" or \"target\" is missing");
   if (direction) light.direction = readDirection(*direction);
   if (target) {
     const std::string fault = aimSpot(readVector(*target), light);
     if (!fault.empty()) refuse(*target, fault);
   }
+  return direction || target;
+}
 
+/// The profile that a light names; null without one.
+std::shared_ptr<const LightProfile> readProfile(const JsonNode& node, LightFiles& files, Scene& scene) {
+  const auto named = find(node, "profile");
+  if (!named) return nullptr;
+  std::shared_ptr<const LightProfile>& profile = files.profiles[readText(*named)];
+  if (!profile) profile = readLightProfile(readPath(*named, files.where), scene.warnings);
+  return profile;
+}
+
+/// The number of the luminaire with this profile, turned as the light says. C0 lies towards +x, and the
+/// vertical plane of types A and B upwards, unless it does.
+std::int32_t readLuminaire(const JsonNode& node, const std::shared_ptr<const LightProfile>& profile,
+                           LightFiles& files, Scene& scene) {
+  glm::dvec3 up = profile->type == PhotometricType::kC ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  if (const auto n = find(node, "up")) up = readDirection(*n);
+  const auto [place, is_new] = files.luminaires.emplace(std::tuple(profile.get(), up.x, up.y, up.z),
+                                                        std::int32_t(scene.luminaires.size()));
+  if (is_new) scene.luminaires.push_back({profile, up});
+  return place->second;
+}
+
+/// Lumens of a plain point or spot whose axis has a candela: the integral of its shape over all directions.
+double lumensOfCandela(const Light& light) {
+  constexpr double kPi = std::numbers::pi;
+  if (light.kind == LightKind::kPoint) return 4 * kPi;
+  const double edge = std::cos(light.cutoff), inner = std::cos(light.inner_cone);
+  if (light.falloff == SpotFalloff::kCone) return 2 * kPi * (1 - inner + (inner - edge) / 3);
+  const double power = double(light.exponent) + 1;
+  return 2 * kPi * (1 - std::pow(edge, power)) / power;
+}
+
+/// The factor by which profile, lumens and candela multiply the colours of a light whose shape is read.
+double readBrightness(const JsonNode& node, const Light& light, const LightProfile* profile) {
+  const auto lumens = find(node, "lumens"), candela = find(node, "candela");
+  if (lumens) refuseKeys(node, {"candela"}, "beside lumens");
+  if (lumens || candela) {
+    const double wanted = readNumber(lumens ? *lumens : *candela, 0, kLargestNumber);
+    const double has = !profile ? lumensOfCandela(light) : lumens ? profile->lumens / profile->peak : 1;
+    if (!(has > 0)) refuse(lumens ? *lumens : *candela, "the light has no shape that could give it");
+    return wanted / has;
+  }
+  return profile ? profile->peak : 1;
+}
+
+/// Reads a spot's direction and its falloff. With OpenGL's cutoff of 180° it becomes a point light, whatever
+/// its exponent and direction; a direction or target is required all the same.
+void readSpot(const JsonNode& node, Light& light) {
+  if (!readAim(node, light)) refuse(node, "\"direction\" or \"target\" is missing");
   if (find(node, "inner_cone") || find(node, "outer_cone")) {
     refuseKeys(node, {"cutoff", "exponent"}, "beside inner_cone and outer_cone");
     double inner = 0;
@@ -191,7 +242,7 @@ std::uint32_t readGroup(const JsonNode& node, LightGroupNumbers& groups, Scene& 
 }
 
 /// How a light with keys moves. Refuses keys for members that the light itself doesn't have.
-std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& light) {
+std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& light, double brightness) {
   if (!hasKeys(node, {"position", "direction", "target", "color", "intensity", "range"})) return std::nullopt;
   const auto vector = [](const JsonNode& n) { return glm::dvec4(readVector(n), 0); };
   /// The curve of a member that needs the light's own member `own`.
@@ -211,21 +262,22 @@ std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& li
   const auto target = find(node, "target");
   if (target && motion.target.keys.empty() && !motion.position.keys.empty())
     motion.target = constantCurve(vector(*target));
-  if (light.kind == LightKind::kPoint) motion.direction.keys = motion.target.keys = {};  // a cutoff of 180
+  if (light.kind == LightKind::kPoint && light.luminaire < 0)
+    motion.direction.keys = motion.target.keys = {};  // a cutoff of 180
   motion.color = readMotion(node, "color", [&](const JsonNode& n) {
     if (find(node, "diffuse") || find(node, "specular"))
       refuse(n, "means nothing for a light with \"diffuse\" or \"specular\"");
     return glm::dvec4(readColor(n), 0);
   });
-  motion.intensity = readMotion(node, "intensity", [](const JsonNode& n) {
-    return glm::dvec4(readNumber(n, 0, kLargestNumber), 0, 0, 0);
+  motion.intensity = readMotion(node, "intensity", [&](const JsonNode& n) {
+    return glm::dvec4(readNumber(n, 0, kLargestNumber) * brightness, 0, 0, 0);
   });
   Light plain;
   readOwnColors(node, plain);
   motion.ambient = plain.ambient;
   motion.diffuse = plain.diffuse;
   motion.specular = plain.specular;
-  motion.own_intensity = readOwnIntensity(node);
+  motion.own_intensity = readOwnIntensity(node, brightness);
   Light posed = light;
   checkPoses(node, [&](double frame) { return poseLight(motion, frame, posed); });
   return motion;
@@ -233,19 +285,22 @@ std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& li
 
 }  // namespace
 
-void readLight(const JsonNode& node, const SearchFolders& where, LightGroupNumbers& groups, Scene& scene) {
+void readLight(const JsonNode& node, LightGroupNumbers& groups, LightFiles& files, Scene& scene) {
   if (isSource(node)) {
-    readSource(node, where, readGroup(node, groups, scene), scene);
+    readSource(node, files.where, readGroup(node, groups, scene), scene);
     return;
   }
-  allowKeys(node, {"type",     "position",   "direction",     "target",      "color",  "intensity",
-                   "ambient",  "diffuse",    "specular",      "attenuation", "range",  "cutoff",
-                   "exponent", "inner_cone", "outer_cone",    "shadow",      "radius", "angle",
-                   "enabled",  "keys",       "interpolation", "group",       "name",   "window"});
+  allowKeys(node,
+            {"type",       "position", "direction",   "target",  "color",   "intensity", "ambient",
+             "diffuse",    "specular", "attenuation", "range",   "cutoff",  "exponent",  "inner_cone",
+             "outer_cone", "shadow",   "radius",      "angle",   "enabled", "keys",      "interpolation",
+             "group",      "name",     "window",      "profile", "up",      "lumens",    "candela"});
   Light light;
   light.kind = readKind(need(node, "type"));
+  std::shared_ptr<const LightProfile> profile;
   if (light.kind == LightKind::kDirectional) {
-    refuseKeys(node, {"position", "target", "attenuation", "range", "radius"}, "for a directional light");
+    refuseKeys(node, {"position", "target", "attenuation", "range", "radius", "profile", "lumens"},
+               "for a directional light");
     refuseKeys(node, {"window"}, "for a light without a range");
     light.direction = readDirection(need(node, "direction"));
     if (const auto n = find(node, "angle")) light.half_angle = glm::radians(readNumber(*n, 0, 90)) / 2;
@@ -253,21 +308,30 @@ void readLight(const JsonNode& node, const SearchFolders& where, LightGroupNumbe
     refuseKeys(node, {"angle"}, "for a light with a position");
     light.position = readVector(need(node, "position"));
     if (const auto n = find(node, "radius")) light.radius = readNumber(*n, 0, kLargestNumber);
+    profile = readProfile(node, files, scene);
+    if (profile || find(node, "lumens")) light.attenuation = {0, 0, 1};
     if (const auto n = find(node, "attenuation")) light.attenuation = readAttenuation(*n);
     if (const auto n = find(node, "range")) light.range = static_cast<float>(readPositive(*n));
     if (const auto n = find(node, "window")) light.window = readWindow(*n);
   }
-  if (light.kind == LightKind::kPoint) refuseKeys(node, {"direction", "target"}, "for a point light");
+  if (!profile) refuseKeys(node, {"up", "candela"}, "for a light without a profile");
+  if (light.kind == LightKind::kPoint && !profile)
+    refuseKeys(node, {"direction", "target"}, "for a point light without a profile");
+  if (light.kind == LightKind::kPoint && profile && !readAim(node, light)) light.direction = {0, -1, 0};
   if (light.kind == LightKind::kSpot) {
     readSpot(node, light);
   } else {
     refuseKeys(node, {"cutoff", "exponent", "inner_cone", "outer_cone"}, "for a light that isn't a spot");
   }
-  readColors(node, light);
+  if (profile) light.luminaire = readLuminaire(node, profile, files, scene);
+  const double brightness = readBrightness(node, light, profile.get());
+  readColors(node, brightness, light);
+  for (const glm::vec3& color : {light.ambient, light.diffuse, light.specular})
+    if (!std::isfinite(color.x + color.y + color.z)) refuse(node, "is brighter than floats can say");
   if (const auto n = find(node, "shadow")) light.shadow = readBool(*n);
   light.group = readGroup(node, groups, scene);
   if (const auto n = find(node, "name")) light.name = readText(*n);
-  std::optional<LightMotion> motion = readLightMotion(node, light);
+  std::optional<LightMotion> motion = readLightMotion(node, light, brightness);
   if (const auto n = find(node, "enabled"); n && !readBool(*n)) return;
   if (motion) {
     motion->light = static_cast<std::uint32_t>(scene.lights.size());

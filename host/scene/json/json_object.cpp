@@ -262,17 +262,31 @@ std::string nameOf(const std::string& name, const std::string& part, std::size_t
 }
 
 /// A transform that attachLight() takes to the light's own place: it looks along −z.
-glm::dmat4 frameOf(const Light& light) {
+glm::dmat4 frameOf(const Light& light, const Scene& scene) {
   glm::dmat4 frame(1.0);
-  if (light.kind != LightKind::kPoint) frame[2] = glm::dvec4(-light.direction, 0);
+  if (light.luminaire >= 0) frame[0] = glm::dvec4(scene.luminaires[std::size_t(light.luminaire)].up, 0);
+  if (light.kind != LightKind::kPoint || light.luminaire >= 0) frame[2] = glm::dvec4(-light.direction, 0);
   if (light.kind != LightKind::kDirectional) frame[3] = glm::dvec4(light.position, 1);
   return frame;
 }
 
-glm::dmat4 frameOf(const Camera& camera) { return camera.camera_to_world; }
+glm::dmat4 frameOf(const Camera& camera, const Scene&) { return camera.camera_to_world; }
 
-std::string place(const glm::dmat4& to_world, Light& light) { return attachLight(to_world, light); }
-std::string place(const glm::dmat4& to_world, Camera& camera) { return attachCamera(to_world, camera); }
+/// Gives a copy of a file's light a luminaire of its own.
+void separate(Light& light, Scene& scene) {
+  if (light.luminaire < 0) return;
+  const Luminaire copy = scene.luminaires[std::size_t(light.luminaire)];
+  light.luminaire = static_cast<std::int32_t>(scene.luminaires.size());
+  scene.luminaires.push_back(copy);
+}
+void separate(Camera&, Scene&) {}
+
+std::string place(const glm::dmat4& to_world, Scene& scene, Light& light) {
+  return attachLight(to_world, scene.luminaires, light);
+}
+std::string place(const glm::dmat4& to_world, Scene&, Camera& camera) {
+  return attachCamera(to_world, camera);
+}
 
 /// Appends a file's attachments: of things that are numbered from `first` on, to nodes from first_node on.
 /// Returns which of the file's things are attached.
@@ -288,19 +302,21 @@ std::vector<bool> attachAgain(const std::vector<Attachment>& of_file, std::size_
   return attached;
 }
 
-/// Places a file's lights or cameras, which take of a transform its motion and turn alone. `object`: for
-/// errors.
+/// Places a file's lights or cameras, which take of a transform its motion and turn alone. things: of the
+/// scene. `object`: for errors.
 template <class T>
 void placeThings(const JsonNode& object, const Attached<T>& of_file, const Placement& placement,
-                 std::size_t first_node, std::vector<T>& things, std::vector<Attachment>& attachments) {
+                 std::size_t first_node, Scene& scene, std::vector<T>& things,
+                 std::vector<Attachment>& attachments) {
   const std::size_t first = things.size();
   const std::vector<bool> attached =
       attachAgain(of_file.attachments, of_file.items.size(), first, first_node, attachments);
   for (std::size_t i = 0; i < of_file.items.size(); ++i) {
-    const glm::dmat4 frame = frameOf(of_file.items[i]);
+    const glm::dmat4 frame = frameOf(of_file.items[i], scene);
     things.push_back(of_file.items[i]);
+    separate(things.back(), scene);
     if (attached[i]) continue;
-    const std::string fault = place(placement.still * frame, things.back());
+    const std::string fault = place(placement.still * frame, scene, things.back());
     if (!fault.empty()) refuse(object, fault);
     if (placement.node >= 0)
       attachments.push_back(
@@ -331,10 +347,10 @@ void placeFile(const JsonNode& object, const LoadedFile& file, const FileParts& 
                      part.object_to_world, part.mesh});
   }
   if (parts.lights)
-    placeThings(object, file.lights, placement, first_node, scene.lights, animation.attached_lights);
+    placeThings(object, file.lights, placement, first_node, scene, scene.lights, animation.attached_lights);
   if (!parts.cameras) return;
   const std::size_t first_camera = scene.cameras.size();
-  placeThings(object, file.cameras, placement, first_node, scene.cameras, animation.attached_cameras);
+  placeThings(object, file.cameras, placement, first_node, scene, scene.cameras, animation.attached_cameras);
   for (std::size_t i = first_camera; i < scene.cameras.size(); ++i)
     scene.cameras[i].name = nameOf(name, scene.cameras[i].name, file.cameras.items.size());
 }

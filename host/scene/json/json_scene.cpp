@@ -236,10 +236,11 @@ SceneFile readScene(SceneFile read, const std::string& text, const std::string& 
   // Lights and cameras refer to nothing else in the file, so they are read while it is parsed: lights because
   // there may be a million, cameras because their order counts and a JSON object has none.
   LightGroupNumbers groups = lightGroupNumbers(scene);
+  LightFiles light_files{where};
   std::size_t light_count = 0;
   const auto read_member = [&](const JsonNode& node) {
     if (node.parent->key == "lights")
-      readLight(node, where, groups, scene);
+      readLight(node, groups, light_files, scene);
     else
       readCamera(node, std::string(node.key), scene);
   };

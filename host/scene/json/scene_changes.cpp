@@ -180,7 +180,7 @@ void readAlone(const SceneChange& change, Json object, const Scene& scene, const
 }
 
 /// A light as a scene file has it. Its group has no word here.
-Json lightJson(const Light& light) {
+Json lightJson(const Light& light, const std::vector<Luminaire>& luminaires) {
   const auto list = [](const auto& v) { return Json{v.x, v.y, v.z}; };
   Json json = Json::object();
   json["shadow"] = light.shadow;
@@ -203,8 +203,16 @@ Json lightJson(const Light& light) {
   json["radius"] = light.radius;
   if (std::isfinite(light.range)) json["range"] = light.range;
   if (light.window == RangeWindow::kKhr) json["window"] = "khr";
-  if (light.kind == LightKind::kPoint) return json;
+  if (light.luminaire >= 0) {
+    const Luminaire& luminaire = luminaires[std::size_t(light.luminaire)];
+    json["profile"] = luminaire.profile->name;
+    json["candela"] = 1;
+    json["up"] = list(luminaire.up);
+  } else if (light.kind == LightKind::kPoint) {
+    return json;
+  }
   json["direction"] = list(light.direction);
+  if (light.kind == LightKind::kPoint) return json;
   if (light.falloff == SpotFalloff::kCone) {
     json["inner_cone"] = glm::degrees(light.inner_cone);
     json["outer_cone"] = glm::degrees(light.cutoff);
@@ -217,11 +225,14 @@ Json lightJson(const Light& light) {
 
 void changeLight(const SceneChange& change, std::size_t number, Scene& scene) {
   Light& light = scene.lights[number];
-  readAlone(change, lightJson(light), scene, [&](const JsonNode& node) {
+  LightFiles files{};
+  for (const Luminaire& luminaire : scene.luminaires)
+    files.profiles.emplace(luminaire.profile->name, luminaire.profile);
+  readAlone(change, lightJson(light, scene.luminaires), scene, [&](const JsonNode& node) {
     Scene read;
     read.light_groups = scene.light_groups;
     LightGroupNumbers groups = lightGroupNumbers(read);
-    readLight(node, {}, groups, read);
+    readLight(node, groups, files, read);
     if (!read.animation.lights.empty()) refuse(node, "a mesh file's light can't be given keys");
     scene.light_groups = read.light_groups;
     if (read.lights.empty()) {  // it is switched off; its place stays, as what moves counts on it
@@ -231,6 +242,11 @@ void changeLight(const SceneChange& change, std::size_t number, Scene& scene) {
     Light changed = read.lights.front();
     if (!find(node, "name")) changed.name = light.name;
     if (!find(node, "group")) changed.group = light.group;
+    if (changed.luminaire >= 0) {
+      changed.luminaire = std::int32_t(scene.luminaires.size());
+      scene.luminaires.push_back(read.luminaires.front());
+    }
+    changed.over_pi = light.over_pi;
     light = changed;
   });
 }

@@ -81,10 +81,24 @@ glm::dvec3 directionToRead(const glm::dvec3& direction) {
   return direction;
 }
 
-/// Appends the lights and the end of a scene's file. groups: the names of the scene's. sources: as elements
-/// of the list, too.
-void appendLights(std::span<const Light> lights, const std::vector<std::string>& groups, std::string& text,
+/// folder: of the file that names the profile.
+void appendLuminaire(const Luminaire& luminaire, const std::string& folder, std::string& text) {
+  const glm::dvec3 up = directionToRead(luminaire.up);
+  fmt::format_to(std::back_inserter(text), ", \"profile\": {}, \"candela\": 1, \"up\": [{}, {}, {}]",
+                 quoted(pathFrom(folder, luminaire.profile->name)), up.x, up.y, up.z);
+}
+
+/// What lights refer to.
+struct LightReferences {
+  const std::vector<std::string>& groups;  ///< the names of the scene's
+  const std::vector<Luminaire>& luminaires;
+  std::string folder;  ///< of the scene's file
+};
+
+/// Appends the lights and the end of a scene's file. sources: as elements of the list, too.
+void appendLights(std::span<const Light> lights, const LightReferences& of_scene, std::string& text,
                   const std::vector<nlohmann::ordered_json>& sources = {}) {
+  const std::vector<std::string>& groups = of_scene.groups;
   text += "  \"lights\": [";
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -98,13 +112,16 @@ void appendLights(std::span<const Light> lights, const std::vector<std::string>&
       const glm::dvec3& p = light.position;
       fmt::format_to(out, ", \"position\": [{}, {}, {}]", p.x, p.y, p.z);
     }
-    if (light.kind != LightKind::kPoint) {
+    const bool is_luminaire = light.luminaire >= 0;
+    if (is_luminaire)
+      appendLuminaire(of_scene.luminaires[std::size_t(light.luminaire)], of_scene.folder, text);
+    if (light.kind != LightKind::kPoint || is_luminaire) {
       const glm::dvec3 d = directionToRead(light.direction);
       fmt::format_to(out, ", \"direction\": [{}, {}, {}]", d.x, d.y, d.z);
     }
     fmt::format_to(out, ", \"color\": [{}, {}, {}]", c.x, c.y, c.z);
     if (light.kind == LightKind::kSpot) appendSpot(light, text);
-    if (light.attenuation != glm::vec3(1, 0, 0)) {
+    if (light.attenuation != glm::vec3(1, 0, 0) || is_luminaire) {
       const glm::vec3& a = light.attenuation;
       fmt::format_to(out, ", \"attenuation\": [{}, {}, {}]", a.x, a.y, a.z);
     }
@@ -126,6 +143,11 @@ void appendLights(std::span<const Light> lights, const std::vector<std::string>&
     text += (i + lights.size() ? ",\n    " : "\n    ") + sources[i].dump();
   text += "\n  ]\n}\n";
 }
+
+/// Of lights without groups and profiles.
+const std::vector<std::string> kNoGroups;
+const std::vector<Luminaire> kNoLuminaires;
+const LightReferences kNoReferences{kNoGroups, kNoLuminaires, ""};
 
 nlohmann::ordered_json colorJson(const glm::vec3& color) { return {color.x, color.y, color.z}; }
 
@@ -171,7 +193,7 @@ nlohmann::ordered_json fogJson(const Fog& fog) {
 
 std::string lightsScene(const std::vector<Light>& lights) {
   std::string text = "{\n";
-  appendLights(lights, {}, text);
+  appendLights(lights, kNoReferences, text);
   return text;
 }
 
@@ -179,7 +201,7 @@ std::string meshWithLights(const std::string& mesh_path, const Camera& camera,
                            const std::vector<Light>& lights) {
   std::string text = "{\n" + cameraLine(camera);
   text += fmt::format("  \"objects\": [{{\"mesh\": {}}}],\n", quoted(mesh_path));
-  appendLights(lights, {}, text);
+  appendLights(lights, kNoReferences, text);
   return text;
 }
 
@@ -205,6 +227,8 @@ static OrderedJson sceneFrom(const std::string& folder, const std::string& scene
   }
   if (scene.contains("objects"))
     for (OrderedJson& object : scene["objects"]) movePath(object, "mesh");
+  if (scene.contains("lights"))
+    for (OrderedJson& light : scene["lights"]) movePath(light, "profile");
   if (scene.contains("light_fields"))
     for (OrderedJson& field : scene["light_fields"]) movePath(field, "csv");
   if (scene.contains("lights"))
@@ -248,7 +272,7 @@ std::string sceneWithLights(const std::string& scene_path, const std::string& fo
   std::string text = "{\n";
   if (!scene.contains("camera") && !scene.contains("cameras")) text += cameraLine(camera);
   text += membersText(scene);
-  appendLights(lights, {}, text);
+  appendLights(lights, kNoReferences, text);
   return text;
 }
 
@@ -279,7 +303,7 @@ std::string pictureScene(const std::string& scene_path, const std::string& folde
   eraseLights(json);
   setSurroundings(scene, OrderedJson::parse(cameraText(camera)), size, json);
   std::string text = "{\n" + membersText(json);
-  appendLights(scene.lights, {}, text);
+  appendLights(scene.lights, {kNoGroups, scene.luminaires, folder}, text);
   return text;
 }
 
@@ -328,8 +352,7 @@ SavedScene savedScene(const std::string& scene_path, const std::string& folder, 
     saved.text += membersText(json);
     std::vector<OrderedJson> sources;
     for (const LightSource& source : scene.sources) sources.push_back(sourceJson(scene, source, folder));
-    appendLights(ownLights(scene), scene.light_groups,
-                 saved.text, sources);
+    appendLights(ownLights(scene), {scene.light_groups, scene.luminaires, folder}, saved.text, sources);
   }
   return saved;
 }

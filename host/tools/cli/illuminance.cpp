@@ -10,6 +10,7 @@
 
 #include "base/split.hpp"
 #include "base/write_file.hpp"
+#include "gbuffer/packed_normal.hpp"
 #include "luciole/error.hpp"
 #include "raster/empty_gbuffer.hpp"
 #include "raster/view.hpp"
@@ -96,7 +97,7 @@ GBuffer whiteSurfaces(const MeasuredGrid& grid) {
   camera.half_height = extent;
   camera.near = extent / 2;
   camera.far = 2 * extent;
-  GBuffer gbuffer = emptyGBuffer(cameraView(camera, grid.count), {});
+  GBuffer gbuffer = emptyGBuffer(cameraView(camera, grid.count), {.geometric_normal = true});
   gbuffer.camera = camera;
   const glm::dmat4 to_view = worldToView(camera);
   const std::size_t n = gbuffer.pixels();
@@ -109,6 +110,7 @@ GBuffer whiteSurfaces(const MeasuredGrid& grid) {
         gbuffer.normal[i + std::size_t(c) * n] = c == 2 ? 1.0f : 0.0f;
         gbuffer.diffuse[i + std::size_t(c) * n] = 1.0f;
       }
+      gbuffer.geometric_normal[i] = packNormal({0, 0, 1});
     }
   return gbuffer;
 }
