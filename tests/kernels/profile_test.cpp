@@ -29,7 +29,7 @@ std::vector<Column> directions(Random& random, int count) {
 }
 
 /// Two luminaires of a profile, the second turned so, as the kernel takes them.
-RawArray<float> luminairesOf(const LightProfile& profile, const glm::dvec3& direction, const glm::dvec3& up) {
+Column luminairesOf(const LightProfile& profile, const glm::dvec3& direction, const glm::dvec3& up) {
   Scene scene;
   const auto shared = std::make_shared<const LightProfile>(profile);
   scene.luminaires = {{shared, {1, 2, 3}}, {shared, up}};
@@ -40,9 +40,9 @@ RawArray<float> luminairesOf(const LightProfile& profile, const glm::dvec3& dire
   const Camera camera;
   const std::vector<std::uint32_t> order{0, 1};
   RawArray<ShadeLight> lights = prepareLights(scene, order, camera, {});
-  RawArray<float> luminaires = setLuminaires(scene, camera, order, lights);
+  const RawArray<float> luminaires = setLuminaires(scene, camera, order, lights);
   EXPECT_EQ(lights[1].ambient.w, 2.0f);
-  return luminaires;
+  return {luminaires.begin(), luminaires.end()};
 }
 
 TEST(ProfileKernels, AnglesAreThoseOfTheArcTangent) {
@@ -51,7 +51,7 @@ TEST(ProfileKernels, AnglesAreThoseOfTheArcTangent) {
     std::vector<Warning> warnings;
     return parseLightProfile(iesText({}), "lamp.ies", warnings);
   }();
-  const RawArray<float> luminaires = luminairesOf(even, {0, -1, 0}, {1, 0, 0});
+  const Column luminaires = luminairesOf(even, {0, -1, 0}, {1, 0, 0});
   std::vector<Column> in = directions(random, 20000);
   for (const float tiny : {1e-30f, 1e-8f})
     for (int i = 0; i < 8; ++i) {
@@ -108,7 +108,7 @@ TEST(ProfileKernels, TablesAreBilinearInTheFilesTwoAngles) {
                                                              .candela = BilinearLamp::value}),
                                                     "lamp.ies", warnings);
     const glm::dvec3 axis = random.direction(), up = random.direction();
-    const RawArray<float> luminaires = luminairesOf(profile, axis, up);
+    const Column luminaires = luminairesOf(profile, axis, up);
     const glm::dvec3 front = glm::normalize(up - glm::dot(up, axis) * axis), right = glm::cross(axis, front);
     Column first;
     for (const int lanes : kAllLanes) {
@@ -171,7 +171,7 @@ TEST(ProfileKernels, AnyDirectionHasAShareOfThePeak) {
   for (const std::vector<double>& vertical : {std::vector<double>{0, 90}, {0, 0.017, 90}}) {
     std::vector<Warning> warnings;
     const LightProfile profile = *parseLightProfile(iesText({.vertical = vertical}), "lamp.ies", warnings);
-    const RawArray<float> luminaires = luminairesOf(profile, {0, -1, 0}, {1, 0, 0});
+    const Column luminaires = luminairesOf(profile, {0, -1, 0}, {1, 0, 0});
     for (const int lanes : kAllLanes)
       for (const float share : probe(deviceWithLanes(lanes), "profile_probe.cl", "probe_profile", in, 2,
                                      {{"luminaires", luminaires}})[0])

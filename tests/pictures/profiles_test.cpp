@@ -1,8 +1,11 @@
 // Luminaires with profiles, through the whole pipeline.
+#include <gmock/gmock.h>
+
 #include <fstream>
 #include <numbers>
 
 #include "kernels/probe.hpp"
+#include "luciole/error.hpp"
 #include "pictures/closed_form.hpp"
 #include "pictures/shot.hpp"
 #include "scene/json/write_scene.hpp"
