@@ -37,8 +37,8 @@ double luxAt(const Scene& scene, const PixelTerms& terms) {
   double lux = 0;
   for (const LightTerm& term : terms.lights) {
     const glm::vec3& color = scene.lights[term.light].diffuse;
-    lux += luxOfColor(scene.lights[term.light]) * term.falloff * term.visibility * std::max(term.n_dot_l, 0.0) *
-           (0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b);
+    lux += luxOfColor(scene.lights[term.light]) * term.falloff * term.visibility *
+           std::max(term.n_dot_l, 0.0) * (0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b);
   }
   return lux;
 }

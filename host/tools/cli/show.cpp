@@ -11,8 +11,10 @@
 #include "image/exr_input.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
+#include "tools/cli/open_devices.hpp"
 #include "tools/cli/picture_options.hpp"
 #include "tools/cli/picture_output.hpp"
+#include "tools/cli/profile_picture.hpp"
 #include "tools/viewing/shown_layer.hpp"
 
 namespace luciole {
@@ -23,8 +25,13 @@ struct ShowOptions : PictureOptions {
   std::string layer;
 };
 
-void show(const CommandContext& context, const ShowOptions& options) {
+void show(CommandContext& context, const ShowOptions& options) {
   checkOutput(options);
+  if (isProfile(options.input)) {
+    startCheckedDevice(options, context, true);
+    writeImage(profilePicture(context.device, options.input), options.output, {}, fileOptions(options));
+    return;
+  }
   ExrInput input(options.input);
   const ShownLayer layer = findShownLayer(input.parts(), options.layer, options.input);
   Stats stats;
@@ -38,10 +45,13 @@ void show(const CommandContext& context, const ShowOptions& options) {
 }  // namespace
 
 void addShowCommand(CLI::App& app, CommandContext& context) {
-  CLI::App* command =
-      app.add_subcommand("show", "a layer of an EXR as a picture: normals, depths, counts, ids, light ...");
+  CLI::App* command = app.add_subcommand(
+      "show", "a layer of an EXR as a picture: normals, depths, counts, ids, light ...; or a lamp's profile");
   auto options = std::make_shared<ShowOptions>();
-  command->add_option("IN", options->input, "an EXR of here or of another program")->required();
+  command
+      ->add_option("IN", options->input,
+                   "an EXR of here or of another program; or a lamp's profile, .ies or .ldt")
+      ->required();
   command
       ->add_option(
           "--layer", options->layer,

@@ -249,5 +249,25 @@ TEST_F(SweepOption, WhatMakesNoSenseIsTold) {
          "the pictures differ in size");
 }
 
+TEST_F(ShowCommand, DrawsALampsProfile) {
+  // 100 cd within 60 degrees of straight down, and nothing above.
+  writeText(folder / "lamp.ies",
+            "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 50\n0 59.9 60.1 180\n0\n100 100 0 0\n");
+  const auto shown = run("show " + (folder / "lamp.ies") + " -o " + (folder / "lamp.png"));
+  EXPECT_EQ(shown.status, 0) << shown.err;
+  const Image image = readImage(folder / "lamp.png");
+  EXPECT_GT(image.width, 960);
+  const auto at = [&](int x, int y) {
+    return &image.pixels[(std::size_t(y) * image.width + x) * image.channels.size()];
+  };
+  // Halfway down the left picture it is filled, amber; halfway up it is white paper.
+  EXPECT_GT(at(250, 340)[0] - at(250, 340)[2], 0.4f);
+  EXPECT_GT(at(250, 130)[2], 0.5f);
+  // On the wall light is below the lamp, which hangs 0.8 m below the upper edge.
+  const int wall = image.width - 240;
+  EXPECT_GT(at(wall, 240)[1], 0.2f);
+  EXPECT_EQ(at(wall, 40)[1], 0.0f);
+}
+
 }  // namespace
 }  // namespace luciole::test
