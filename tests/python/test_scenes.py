@@ -256,3 +256,34 @@ def test_a_scene_that_moves_is_posed_and_loses_what_moved_what_is_replaced() -> 
     scene.cameras = luciole.Camera.look_at((0, 2, 8), (0, 1, 0))
     scene.pose(50)
     assert len(scene.lights[0]) == 1 and luciole.render(scene, size=(32, 18)).rgb.shape == (18, 32, 3)
+
+
+def test_skies_and_faces_are_many_lights() -> None:
+    corners = [(-1, 0, -1), (-1, 0, 1), (1, 0, 1), (1, 0, -1)]
+    floor = luciole.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=luciole.Material(diffuse=1.0))
+    above = luciole.Camera.look_at((0, 3, 0.01), (0, 0, 0), fov_y=10)
+    white = luciole.Environment(np.ones((8, 16, 3), np.float32), count=1024, cast_shadows=False)
+    scene = luciole.Scene(floor, lights=white, cameras=above)
+    lit = luciole.render(scene, size=(16, 16)).rgb
+    assert np.abs(lit - 1).max() < 0.03  # the horizon cuts some of the 1024 cells
+    few = luciole.render(scene, size=(16, 16), light_count=16).rgb
+    assert not np.array_equal(few, lit)
+    assert np.array_equal(luciole.render(scene, size=(16, 16)).rgb, lit)
+    panel = luciole.AreaLight((0, 1, 0), (0, -1, 0), 0.5, 0.5, color=2.0, count=64)
+    scene.lights = [panel, luciole.PointLights([(0, 2, 0)])]
+    kinds = [type(lights).__name__ for lights in scene.lights]
+    assert kinds == ["PointLights", "AreaLight"]
+    assert luciole.render(scene, size=(16, 16)).rgb.max() > 0.25
+    with pytest.raises(luciole.InputError, match="two environments"):
+        scene.lights = [white, white]
+    with pytest.raises(luciole.InputError, match="count"):
+        scene.lights = luciole.AreaLight((0, 1, 0), (0, -1, 0), count=10**7)
+
+
+def test_what_glows_lights() -> None:
+    lamp = luciole.Material(emission=3.0, emits=64)
+    corners = [(-0.3, 1, -0.3), (0.3, 1, -0.3), (0.3, 1, 0.3), (-0.3, 1, 0.3)]
+    glow = luciole.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=lamp)
+    floor = luciole.Mesh([(-1, 0, -1), (-1, 0, 1), (1, 0, 1), (1, 0, -1)], [(0, 1, 2), (0, 2, 3)])
+    scene = luciole.Scene([glow, floor], lights=[], cameras=luciole.Camera.look_at((0, 0.6, 3), (0, 0, 0), fov_y=30))
+    assert luciole.render(scene, size=(32, 32)).rgb[16:].max() > 0.05
