@@ -94,9 +94,9 @@ inline void readStrangersLights(const std::string& path) {
 }
 
 /// Reads a stranger's file as its extension says: .exr is a G-buffer and a picture of groups of lights, .mtl
-/// materials, .jsonl the log of an experiment, .csv a list of lights, .npy a picture, all else a scene. A
-/// file that is refused in one line, or doesn't fit the machine, has been dealt with; anything else that goes
-/// wrong gets out of here.
+/// materials, .jsonl the log of an experiment, .csv a list of lights, .npy a picture, .ies and .ldt profiles,
+/// .pfm a sky, all else a scene. A file that is refused in one line, or doesn't fit the machine, has been
+/// dealt with; anything else that goes wrong gets out of here.
 inline void readStrangersFile(const std::string& path) {
   try {
     if (path.ends_with(".exr")) {
@@ -113,6 +113,12 @@ inline void readStrangersFile(const std::string& path) {
       readStrangersLights(path);
     } else if (path.ends_with(".npy")) {
       readImage(path);
+    } else if (path.ends_with(".ies") || path.ends_with(".ldt")) {
+      std::vector<Warning> warnings;
+      readLightProfile(path, warnings);
+    } else if (path.ends_with(".pfm")) {
+      std::vector<Warning> warnings;
+      readSky(path, warnings);
     } else {
       readStrangersScene(path);
     }
