@@ -68,12 +68,12 @@ void appendAxis(const AxisLines& axis, float low, float high, std::vector<float>
 }
 
 void appendProfile(const LightProfile& profile, std::vector<float>& floats) {
-  constexpr double kPi = std::numbers::pi, kSlack = 1e-6;
+  constexpr double kPi = std::numbers::pi, kAngleSlack = 1e-6;
   const std::vector<double>&polar = profile.polar, &azimuth = profile.azimuth;
   const AxisLines rows = axisLines(polar), columns = axisLines(azimuth);
-  appendAxis(rows, polar.front() <= kSlack ? -kEverywhere : float(polar.front()),
-             polar.back() >= kPi - kSlack ? kEverywhere : float(polar.back()), floats);
-  const bool all_around = azimuth.back() - azimuth.front() >= 2 * kPi - kSlack;
+  appendAxis(rows, polar.front() <= kAngleSlack ? -kEverywhere : float(polar.front()),
+             polar.back() >= kPi - kAngleSlack ? kEverywhere : float(polar.back()), floats);
+  const bool all_around = azimuth.back() - azimuth.front() >= 2 * kPi - kAngleSlack;
   appendAxis(columns, all_around ? -kEverywhere : float(azimuth.front()),
              all_around ? kEverywhere : float(azimuth.back()), floats);
   const double scale = profile.peak > 0 ? 1 / profile.peak : 0;

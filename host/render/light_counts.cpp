@@ -15,6 +15,8 @@ namespace {
 
 /// The first count that is tried, and the last.
 constexpr std::uint32_t kFewestLights = 64, kMostChosen = 1 << 16;
+/// Errors are held to this share of what is allowed, as they are estimated from few pixels.
+constexpr double kShare = 1 / 1.5;
 /// Pixels a side of the pictures that are compared, at most.
 constexpr int kMeasuredSide = 96;
 
@@ -65,9 +67,10 @@ double chooseLightCounts(OpenedDevice& device, Scene& scene, const RenderSetting
     const Image one = pictureBy(count / 2, device, scene, small, of_small, kept);
     const Image other = pictureBy(count * 9 / 20, device, scene, small, of_small, kept);
     error = errorOfMean(one, other, settings.shade);
-    if (error <= settings.shade.light_error || count == kMostChosen) break;
+    if (error <= kShare * settings.shade.light_error || count == kMostChosen) break;
     // It falls about as the number to the power −¾.
-    for (double left = error; left > 3.4 * settings.shade.light_error && count < kMostChosen / 2; left /= 1.7)
+    for (double left = error; left > 3.4 * kShare * settings.shade.light_error && count < kMostChosen / 2;
+         left /= 1.7)
       count *= 2;
   }
   setLightCounts(scene, count);

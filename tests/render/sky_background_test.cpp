@@ -74,6 +74,7 @@ TEST(Environment, PictureIsTheReferencesForEverySampleCountAndCamera) {
       settings.camera.half_height = 3;
       settings.camera.shift = {0.2, -0.1};
       settings.shade.shadows = ShadowMethod::kOff;
+      settings.sample_shading = SampleShading::kAll;
       Stats stats;
       const Image ours = renderScene(testDevice(), scene, settings, stats);
       const View view = cameraView(settings.camera, settings.size);
@@ -81,9 +82,8 @@ TEST(Environment, PictureIsTheReferencesForEverySampleCountAndCamera) {
       const std::vector<glm::dvec3> truth =
           referencePicture(scene, view, settings.shading, samples, pixels, {.model = settings.shade.model});
       // A sum of 40 lights: 40 operations each of 2^-24 of a term, and the lobe's power: 4 · 20 · log2 e
-      // more. With several samples, edges are shaded at shared points.
-      EXPECT_LT(worstDifference(ours, truth), samples == 1 ? (2 * 40 + 4 * 20 * 1.45) * 0x1p-24 : 0.02)
-          << samples << parallel;
+      // more.
+      EXPECT_LT(worstDifference(ours, truth), (2 * 40 + 4 * 20 * 1.45) * 0x1p-24) << samples << parallel;
     }
 }
 

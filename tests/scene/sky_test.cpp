@@ -19,10 +19,8 @@
 namespace luciole {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
-
 glm::dvec3 directionAt(double u, double v) {
-  const double phi = 2 * kPi * (u - 0.5), theta = kPi * v;
+  const double phi = 2 * glm::pi<double>() * (u - 0.5), theta = glm::pi<double>() * v;
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
@@ -69,13 +67,13 @@ glm::dvec3 litBy(const Sky& sky, const glm::dvec3& normal) {
   glm::dvec3 sum(0.0);
   for (int y = 0; y < level.height * kParts; ++y) {
     const double v = (y + 0.5) / (level.height * kParts);
-    const double area =
-        2 * kPi / (level.width * kParts) *
-        (std::cos(kPi * y / (level.height * kParts)) - std::cos(kPi * (y + 1) / (level.height * kParts)));
+    const double area = 2 * glm::pi<double>() / (level.width * kParts) *
+                        (std::cos(glm::pi<double>() * y / (level.height * kParts)) -
+                         std::cos(glm::pi<double>() * (y + 1) / (level.height * kParts)));
     for (int x = 0; x < level.width * kParts; ++x) {
       const double cosine = glm::dot(normal, directionAt((x + 0.5) / (level.width * kParts), v));
       const float* texel = &level.texels[3 * (std::size_t(y / kParts) * level.width + x / kParts)];
-      if (cosine > 0) sum += glm::dvec3(texel[0], texel[1], texel[2]) * (cosine * area / kPi);
+      if (cosine > 0) sum += glm::dvec3(texel[0], texel[1], texel[2]) * (cosine * area / glm::pi<double>());
     }
   }
   return sum;
@@ -92,7 +90,7 @@ TEST(SkyCells, WhiteSkyOfOneLightsAWhiteSurfaceToOne) {
     // Cells that the horizon doesn't cut are exact. The others lie within their diameter δ of it, where they
     // give at most δ each: together 2π · 2δ · δ / 2 / π = 2 δ². Of 4π/N sr and up to 2.5 times as long as
     // wide δ² is 2.9 · 4π/N; the poles' corners are longer, but few. And floats round once.
-    EXPECT_LT(worst, 2 * 2.9 * 4 * kPi / count + 0x1p-23) << count;
+    EXPECT_LT(worst, 2 * 2.9 * 4 * glm::pi<double>() / count + 0x1p-23) << count;
     RecordProperty(std::to_string(count), std::to_string(worst));
   }
 }
@@ -135,7 +133,7 @@ TEST(SkyCells, OfADarkSkyAreNone) {
 TEST(SkyCells, CoverTheWholeSphereOnce) {
   double sum = 0;
   for (const SkyCell& cell : skyCells(*skyOf(20, bright), 777)) sum += cell.solid_angle;
-  EXPECT_NEAR(sum, 4 * kPi, 777 * 0x1p-24 * 4 * kPi / 777 * 2);
+  EXPECT_NEAR(sum, 4 * glm::pi<double>(), 777 * 0x1p-24 * 4 * glm::pi<double>() / 777 * 2);
 }
 
 TEST(SkyCells, SunThatIsOneTexelIsSharedByLights) {
@@ -154,7 +152,7 @@ TEST(Environment, TurnsCounterClockwise) {
   LightSource source;
   source.sky = ahead;
   source.count = 10;
-  source.rotate = kPi / 2;
+  source.rotate = glm::pi<double>() / 2;
   scene.sources = {source};
   addSourceLights(scene);
   ASSERT_EQ(scene.lights.size(), 10u);

@@ -76,6 +76,7 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
       {"type": "environment", "image": "sky.ppm", "rotate": 30, "intensity": 2, "color": [1, 0.9, 0.8], "count": 16,
        "shadow": true, "group": "sky", "name": "sky",
        "keys": [{"frame": 1, "rotate": 0}, {"frame": 9, "rotate": 360, "intensity": 3, "color": 0.5}]}]})"},
+    {"PlainSky", R"({"lights": [{"type": "environment", "image": "sky.ppm"}]})"},
     {"Faces", R"({"lights": [
       {"type": "rectangle", "position": [0, 3, 0], "direction": [0, -1, 0], "up": [1, 0, 0], "width": 2, "height": 0.5,
        "color": 4, "intensity": 2, "count": 8, "shadow": true, "group": "lamp", "name": "panel",

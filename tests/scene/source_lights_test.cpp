@@ -18,8 +18,6 @@
 namespace luciole {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
-
 /// What a white surface reflects of the scene's lights, without shadows.
 double litAt(const Scene& scene, const glm::dvec3& place, const glm::dvec3& normal) {
   SurfacePoint point;
@@ -77,7 +75,7 @@ TEST(Faces, RectanglesIrradianceIsLamberts) {
     const Scene scene = sceneOf(panel(counts[i]));
     ASSERT_EQ(scene.lights.size(), counts[i]);
     for (const glm::dvec3& place : {glm::dvec3(0, 0, 0), {1, 0.5, 0.4}, {-0.8, 1, 0.3}}) {
-      const double truth = 2 * polygonIrradiance(cornersOf(panel(1)), place, tilted) / kPi;
+      const double truth = 2 * polygonIrradiance(cornersOf(panel(1)), place, tilted) / glm::pi<double>();
       errors[i] = std::max(errors[i], std::abs(litAt(scene, place, tilted) / truth - 1));
     }
     RecordProperty(std::to_string(counts[i]), std::to_string(errors[i]));
@@ -145,7 +143,7 @@ Scene glowingPlane(std::uint32_t count) {
   lamp.emission = glm::vec3(3);
   scene.materials = {lamp};
   scene.meshes = {makePrimitive({PrimitiveKind::kPlane}, 0)};
-  Object object{0, glm::rotate(glm::translate(glm::dmat4(1), {0, 2, 0}), kPi, {1, 0, 0})};
+  Object object{0, glm::rotate(glm::translate(glm::dmat4(1), {0, 2, 0}), glm::pi<double>(), {1, 0, 0})};
   object.emits = count;
   object.name = "lamp";
   scene.objects = {object};
@@ -166,7 +164,7 @@ TEST(GlowingMeshes, GiveWhatARectangleGives) {
   const double side = std::round(high - low);
   const std::vector<glm::dvec3> corners{
       {-side / 2, 2, -side / 2}, {side / 2, 2, -side / 2}, {side / 2, 2, side / 2}, {-side / 2, 2, side / 2}};
-  const double truth = 3 * polygonIrradiance(corners, {0.2, 0, 0.1}, {0, 1, 0}) / kPi;
+  const double truth = 3 * polygonIrradiance(corners, {0.2, 0, 0.1}, {0, 1, 0}) / glm::pi<double>();
   // Lights lie within a piece, a sixteenth of their part, of its middle: as good as the midpoint rule to the
   // first order, and 1/√count of a part's side beside. And the lift of a thousandth of a part.
   EXPECT_NEAR(litAt(scene, {0.2, 0, 0.1}, {0, 1, 0}), truth, 2e-3 * truth) << half;

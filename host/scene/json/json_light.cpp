@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "scene/json/json_keys.hpp"
@@ -248,7 +249,11 @@ std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& li
   /// The curve of a member that needs the light's own member `own`.
   const auto curveWith = [&](const char* member, const char* own, const ReadValue& read) {
     return readMotion(node, member, [&](const JsonNode& n) {
-      if (!find(node, own)) refuse(n, fmt::format("means nothing for a light without its own \"{}\"", own));
+      // A profile's light has a direction without saying it.
+      const bool is_default =
+          light.luminaire >= 0 && std::string_view(own) == "direction" && !find(node, "target");
+      if (!find(node, own) && !is_default)
+        refuse(n, fmt::format("means nothing for a light without its own \"{}\"", own));
       return read(n);
     });
   };

@@ -139,8 +139,10 @@ void appendLights(std::span<const Light> lights, const LightReferences& of_scene
     if (!light.name.empty()) fmt::format_to(out, ", \"name\": {}", quoted(light.name));
     text += light.shadow ? ", \"shadow\": true}" : "}";
   }
-  for (std::size_t i = 0; i < sources.size(); ++i)
-    text += (i + lights.size() ? ",\n    " : "\n    ") + sources[i].dump();
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    text += i + lights.size() > 0 ? ",\n    " : "\n    ";
+    text += sources[i].dump();
+  }
   text += "\n  ]\n}\n";
 }
 

@@ -32,7 +32,7 @@ struct LdtText {
     if (word.empty() || error != std::errc() || end != word.data() + word.size() ||
         !(value >= low && value <= high))
       refuse(line, fmt::format("{} is {}, expected a number from {} to {}", what,
-                               word.empty() ? "missing" : "'" + forMessage(word) + "'", low, high));
+                               word.empty() ? "missing" : fmt::format("'{}'", forMessage(word)), low, high));
     return value;
   }
 

@@ -56,7 +56,7 @@ struct IesText {
     if (word.empty() || error != std::errc() || end != digits.data() + digits.size() ||
         !(number >= low && number <= high))
       refuse(fmt::format("{} is {}, expected a number from {} to {}", what,
-                         word.empty() ? "missing" : "'" + forMessage(word) + "'", low, high));
+                         word.empty() ? "missing" : fmt::format("'{}'", forMessage(word)), low, high));
     return number;
   }
 

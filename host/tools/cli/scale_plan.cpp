@@ -272,9 +272,10 @@ LightField ownField(const ScaleOptions& options, const Scene& scene, std::uint64
 
 LightField makeField(const ScaleOptions& options, const Scene& scene, const Bounds& box,
                      std::uint64_t most_lights) {
-  if (options.sources) return {.count = most_lights};
   if (options.own_lights) return ownField(options, scene, most_lights);
   LightField field;
+  field.count = most_lights;
+  if (options.sources) return field;
   if (isList(options)) {
     field.shape = FieldShape::kList;
     field.list = readLightList(options.field, most_lights);
