@@ -35,7 +35,8 @@ class LightError : public ProgramTest {
     writeText(folder / "scene.json",
               R"({"size": [160, 90], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0], "fov_y": 8},
       "objects": [{"primitive": "plane", "scale": 4}], "lights": [)" +
-                  lights + R"({"type": "directional", "direction": [0, -1, 0]}]})");
+                  lights +
+                  R"({"type": "spot", "position": [0, 9, 0], "direction": [0, -1, 0], "cutoff": 80}]})");
   }
 
   /// For how many lights clusters stand in the picture of stats.json.
