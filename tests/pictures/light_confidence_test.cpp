@@ -67,12 +67,14 @@ void skyAround(std::size_t count, double least, Random& random, Scene& scene) {
   }
 }
 
-/// The same of parts of faces, around what is seen.
+/// The same of parts of faces, around what is seen, of which one in four shines on a point.
 void facesAround(std::size_t count, double least, Random& random, Scene& scene) {
   Scene around;
   lightAround(count, least, random, around);
   for (Light& light : around.lights) {
     light.kind = LightKind::kSpot;
+    light.diffuse *= 6.0f;
+    light.specular *= 6.0f;
     light.direction = random.direction();
     light.cutoff = glm::radians(90.0);
     light.exponent = 1;
