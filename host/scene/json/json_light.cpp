@@ -250,8 +250,8 @@ std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& li
   const auto curveWith = [&](const char* member, const char* own, const ReadValue& read) {
     return readMotion(node, member, [&](const JsonNode& n) {
       // A profile's light has a direction without saying it.
-      const bool is_default =
-          light.luminaire >= 0 && std::string_view(own) == "direction" && !find(node, "target");
+      const bool is_default = light.luminaire >= 0 && std::string_view(own) != "position" &&
+                              !find(node, "direction") && !find(node, "target");
       if (!find(node, own) && !is_default)
         refuse(n, fmt::format("means nothing for a light without its own \"{}\"", own));
       return read(n);
