@@ -65,7 +65,7 @@ TEST(ProfileKernels, AnglesAreThoseOfTheArcTangent) {
                                {{"luminaires", luminaires}})[1];
     for (std::size_t i = 0; i < angle.size(); ++i) {
       // -0 counts as 0: both ends of a turn are one direction.
-      const double exact = std::atan2(double(in[1][i]) + 0.0, double(in[0][i]));
+      const double exact = std::atan2(double(in[1][i]) + 0.0, double(in[0][i]) + 0.0);
       const double size = std::abs(exact);
       ASSERT_NEAR(angle[i], exact,
                   kUnit * (size <= kPi / 4   ? 4

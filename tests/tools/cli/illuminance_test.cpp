@@ -43,7 +43,8 @@ class IlluminanceCommand : public ProgramTest {
   std::vector<LuxAt> measure(const std::string& lights, const std::string& plane, const std::string& grid,
                              const std::string& objects = "[]") {
     writeText(folder / "lit.json", R"({"objects": )" + objects + R"(, "lights": )" + lights + "}");
-    const auto result = run("illuminance " + (folder / "lit.json") + " --plane=" + plane + " --grid " + grid);
+    const auto result =
+        run("luciole illuminance " + (folder / "lit.json") + " --plane=" + plane + " --grid " + grid);
     EXPECT_EQ(result.status, 0) << result.err;
     return rowsOf(result.out);
   }
@@ -111,7 +112,7 @@ TEST_F(IlluminanceCommand, TellsMeanLeastAndUniformity) {
   writeText(
       folder / "lit.json",
       R"({"lights": [{"type": "point", "position": [0, 3, 0], "color": 9, "attenuation": [0, 0, 1]}]})");
-  const auto result = run("illuminance " + (folder / "lit.json") + " --plane=" + std::string(kFloor) +
+  const auto result = run("luciole illuminance " + (folder / "lit.json") + " --plane=" + std::string(kFloor) +
                           " --grid 4x4 -o " + (folder / "lux.csv"));
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, "");
@@ -123,7 +124,7 @@ TEST_F(IlluminanceCommand, TellsMeanLeastAndUniformity) {
 TEST_F(IlluminanceCommand, FaultsOfItsGridAreTold) {
   writeText(folder / "lit.json", R"({"lights": []})");
   const auto fault = [&](const std::string& options) {
-    const auto result = run("illuminance " + (folder / "lit.json") + " " + options);
+    const Outcome result = runLine(folder, "luciole illuminance lit.json " + options);
     EXPECT_EQ(result.status, 2) << options;
     return result.err;
   };
@@ -140,8 +141,8 @@ TEST_F(IlluminanceCommand, IsALayerOfPicturesAndALineOfProbes) {
     "fog": {"mode": "exp", "density": 0.2}, "ambient": 0.7,
     "objects": [{"primitive": "plane", "scale": 8, "material": "dark"}],
     "lights": [{"type": "point", "position": [0, 3, 0], "color": 900, "attenuation": [0, 0, 1]}]})");
-  const auto made =
-      run("render " + (folder / "lit.json") + " --aov illuminance --exposure -4 -o " + (folder / "lit.exr"));
+  const auto made = run("luciole render " + (folder / "lit.json") + " --aov illuminance --exposure -4 -o " +
+                        (folder / "lit.exr"));
   ASSERT_EQ(made.status, 0) << made.err;
   const Image picture = readImage(folder / "lit.exr");
   const auto channel =
@@ -149,7 +150,7 @@ TEST_F(IlluminanceCommand, IsALayerOfPicturesAndALineOfProbes) {
   ASSERT_LT(std::size_t(channel), picture.channels.size());
   // The pixel in the middle sees a point within 2 cm of the middle: 100 lux, times 1 - 3/2 (0.02/3)².
   EXPECT_NEAR(picture.pixels[(16 * 33 + 16) * picture.channels.size() + std::size_t(channel)], 100, 0.01);
-  const auto probed = run("render " + (folder / "lit.json") + " --probe 16,16");
+  const auto probed = run("luciole render " + (folder / "lit.json") + " --probe 16,16");
   EXPECT_THAT(probed.out, HasSubstr("illuminance: 99.99"));
 }
 

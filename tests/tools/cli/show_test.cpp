@@ -253,7 +253,7 @@ TEST_F(ShowCommand, DrawsALampsProfile) {
   // 100 cd within 60 degrees of straight down, and nothing above.
   writeText(folder / "lamp.ies",
             "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 50\n0 59.9 60.1 180\n0\n100 100 0 0\n");
-  const auto shown = run("show " + (folder / "lamp.ies") + " -o " + (folder / "lamp.png"));
+  const auto shown = run("luciole show " + (folder / "lamp.ies") + " -o " + (folder / "lamp.png"));
   EXPECT_EQ(shown.status, 0) << shown.err;
   const Image image = readImage(folder / "lamp.png");
   EXPECT_GT(image.width, 960);
