@@ -79,7 +79,9 @@ struct SampleLister final : PointLister {
   void addBackground(const LightSet& lights, LitPlanes& lit) {
     if (!lights.sky) return;
     timed(picture.stats, Stage::kResolve, [&] {
-      if (sky.empty()) sky = skyPlane(*lights.sky, view, drawn);
+      if (sky.empty())
+        sky = samples() == 1 ? skyPlane(*lights.sky, view, drawn)
+                             : skyPlane(*lights.sky, view, drawn, [](std::size_t) { return true; });
       addSky(sky, drawn, lit.color);
     });
   }

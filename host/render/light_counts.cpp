@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "lighting/count_picture.hpp"
@@ -20,10 +22,26 @@ constexpr double kShare = 1 / 1.5;
 /// Pixels a side of the pictures that are compared, at most.
 constexpr int kMeasuredSide = 96;
 
-/// A small picture by so many lights for each source.
-Image pictureBy(std::uint32_t count, OpenedDevice& device, Scene& scene, const RenderSettings& settings,
-                Stats& stats, KeptPicture* kept) {
+/// Whether all lights of sources cast shadows, or none does; empty: some do.
+std::optional<bool> castAlike(const Scene& scene) {
+  const auto lights = std::span(scene.lights).last(scene.source_lights);
+  const auto cast =
+      std::count_if(lights.begin(), lights.end(), [](const Light& light) { return light.shadow; });
+  if (cast > 0 && std::size_t(cast) < lights.size()) return std::nullopt;
+  return cast > 0;
+}
+
+/// Sets the number of lights, which cast shadows as those before did. cast: castAlike() of these.
+void setCounts(std::uint32_t count, std::optional<bool> cast, Scene& scene) {
   setLightCounts(scene, count);
+  if (cast)
+    for (Light& light : std::span(scene.lights).last(scene.source_lights)) light.shadow = *cast;
+}
+
+/// A small picture by so many lights for each source.
+Image pictureBy(std::uint32_t count, std::optional<bool> cast, OpenedDevice& device, Scene& scene,
+                const RenderSettings& settings, Stats& stats, KeptPicture* kept) {
+  setCounts(count, cast, scene);
   return renderScene(device, scene, settings, stats, kept);
 }
 
@@ -59,13 +77,14 @@ double chooseLightCounts(OpenedDevice& device, Scene& scene, const RenderSetting
   small.shade.light_error = 0;
   small.surfaces = settings.surfaces;
   small.on_long_compile = settings.on_long_compile;
+  const std::optional<bool> cast = castAlike(scene);
   double error = 0;
   std::uint32_t count = kFewestLights;
   for (;; count *= 2) {
     Stats of_small;
     // Halves that are divided alike would miss alike. Nine tenths of a half are divided otherwise everywhere.
-    const Image one = pictureBy(count / 2, device, scene, small, of_small, kept);
-    const Image other = pictureBy(count * 9 / 20, device, scene, small, of_small, kept);
+    const Image one = pictureBy(count / 2, cast, device, scene, small, of_small, kept);
+    const Image other = pictureBy(count * 9 / 20, cast, device, scene, small, of_small, kept);
     error = errorOfMean(one, other, settings.shade);
     if (error <= kShare * settings.shade.light_error || count == kMostChosen) break;
     // It falls about as the number to the power −¾.
@@ -73,7 +92,7 @@ double chooseLightCounts(OpenedDevice& device, Scene& scene, const RenderSetting
          left /= 1.7)
       count *= 2;
   }
-  setLightCounts(scene, count);
+  setCounts(count, cast, scene);
   if (error > settings.shade.light_error)
     stats.warnings.push_back(
         fmt::format("{} lights for each source miss {:.2g} of a pixel's light, more than {:.2g}", count,

@@ -178,7 +178,9 @@ struct SharedLister final : PointLister {
           addBackground(backgroundOf(lights), picture.settings.samples, sums.covered, color);
           return;
         }
-        if (sky.empty()) sky = skyPlane(*lights.sky, sampled.view, shared.gbuffer);
+        if (sky.empty())
+          sky = skyPlane(*lights.sky, sampled.view, shared.gbuffer,
+                         [&](std::size_t i) { return sums.covered[i] < float(picture.settings.samples); });
         addBackground(sky, picture.settings.samples, sums.covered, color);
       };
       addUncovered(picture.lighting.lights, sums.color);

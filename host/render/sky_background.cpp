@@ -49,15 +49,22 @@ glm::dvec3 skyColor(const LightSource& environment, const glm::dvec3& direction,
 
 }  // namespace
 
-Plane skyPlane(const LightSource& environment, const View& view, const GBuffer& layout) {
+Plane skyPlane(const LightSource& environment, const View& view, const GBuffer& gbuffer) {
+  const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
+  return skyPlane(environment, view, gbuffer,
+                  [&](std::size_t place) { return !std::isfinite(depth[place]); });
+}
+
+Plane skyPlane(const LightSource& environment, const View& view, const GBuffer& layout,
+               const std::function<bool(std::size_t place)>& is_seen) {
   const std::size_t n = layout.pixels();
   Plane plane(3 * n);
   const glm::dvec2 size(view.size);
-  // The ray through a place of the picture, in pixels from its top left corner. Near and far plane are at 1
-  // and 0, and a far plane may be infinitely far.
+  // The ray through a place of the picture, in pixels from its top left corner, by the point there on the
+  // near plane, which is at 1: the far one may be infinitely far.
   const glm::dmat4 view_to_world = glm::inverse(view.world_to_view), to_view = glm::inverse(view.projection);
-  const auto rayThrough = [&](const glm::dvec2& place) {
-    const glm::dvec4 clip(2 * place.x / size.x - 1, 1 - 2 * place.y / size.y, 1, 1);
+  const auto rayThrough = [&](const glm::dvec2& at) {
+    const glm::dvec4 clip(2 * at.x / size.x - 1, 1 - 2 * at.y / size.y, 1, 1);
     const glm::dvec4 near = to_view * clip;
     const bool parallel = view.projection[3][3] != 0;
     const glm::dvec3 ahead = parallel ? glm::dvec3(0, 0, -1) : glm::normalize(glm::dvec3(near) / near.w);
@@ -65,12 +72,14 @@ Plane skyPlane(const LightSource& environment, const View& view, const GBuffer& 
   };
   tbb::parallel_for(0, layout.height, [&](int y) {
     for (int x = 0; x < layout.width; ++x) {
+      const std::size_t place = layout.index(x, y);
+      if (!is_seen(place)) continue;
       const glm::dvec2 middle = glm::dvec2(view.crop_origin) + glm::dvec2(x + 0.5, y + 0.5);
       const glm::dvec3 ray = rayThrough(middle);
       const double width = std::max(glm::distance(rayThrough(middle + glm::dvec2(1, 0)), ray),
                                     glm::distance(rayThrough(middle + glm::dvec2(0, 1)), ray));
       const glm::dvec3 color = skyColor(environment, ray, width);
-      for (int c = 0; c < 3; ++c) plane[layout.index(x, y) + std::size_t(c) * n] = float(color[c]);
+      for (int c = 0; c < 3; ++c) plane[place + std::size_t(c) * n] = float(color[c]);
     }
   });
   return plane;

@@ -1,7 +1,6 @@
 #include "scene/glowing_patches.hpp"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>

@@ -64,9 +64,11 @@ class ChangeForPicture {
       sources_ = countsOf(scene);
       setLightCounts(count, scene);
     }
-    if (valueOf(request, "cast_shadows").empty() && !request.shadows_given) return;
+    const std::string &shadows = valueOf(request, "shadows"), &casters = valueOf(request, "cast_shadows");
+    const bool asked_for = request.shadows_given && shadows != "off";
+    if (casters.empty() && !asked_for) return;
     for (const Light& light : scene.lights) marks_.push_back(light.shadow);
-    cast(request);
+    castShadows(casters, asked_for, scene);
   }
   ~ChangeForPicture() {
     // All but those of sources, if they have become fewer or more.
@@ -80,12 +82,6 @@ class ChangeForPicture {
   ChangeForPicture& operator=(const ChangeForPicture&) = delete;
 
   Model model() const { return model_; }
-
-  /// Again, where there are other lights.
-  void cast(const Request& request) {
-    const std::string& shadows = valueOf(request, "shadows");
-    castShadows(valueOf(request, "cast_shadows"), request.shadows_given && shadows != "off", scene_);
-  }
 
  private:
   /// How many lights take the place of each source and of what glows.
@@ -179,14 +175,11 @@ std::unique_ptr<PictureHandle> render(SceneHandle& handle, const std::shared_ptr
   auto picture = std::make_unique<PictureHandle>();
   handle.withRenderer(device, [&](Renderer& renderer) {
     Scene& scene = renderer.scene();
-    ChangeForPicture change(request, scene);
+    const ChangeForPicture change(request, scene);
     RenderSettings settings = settingsOf(request, scene, change.model());
     settings.band_height = bandHeight(settings, scene.lights.size());
     Stats& stats = picture->stats;
-    if (valueOf(request, "light_count") == "auto") {
-      renderer.chooseLightCounts(settings, stats);
-      change.cast(request);
-    }
+    if (valueOf(request, "light_count") == "auto") renderer.chooseLightCounts(settings, stats);
     if (valueOf(request, "exposure") == "auto") {
       stats.measured_exposure = renderer.measureExposure(settings, stats);
       settings.exposure = float(*stats.measured_exposure);

@@ -74,7 +74,6 @@ void chooseLightCounts(Renderer& renderer, int frame, const RenderOptions& optio
   if (!(settings.shade.light_error > 0))
     throw InputError("--light-count auto: expected --light-error, which says how much counts may miss");
   renderer.chooseLightCounts(settings, stats);
-  castShadows(options, scene);
   progress.clear();
 }
 
