@@ -619,9 +619,8 @@ WORK void light_tiles(const Sampling* sampling, SampledTile tile, Cut* cut, Samp
 // rows of kLobeFields. nodes … first_hole_triangle: of the tree over the triangles. strata … unsure: room for
 // kMostStrata of each work-item.
 // - light, bound, half_width: planes r g b of what the pixels reflect, of proven errors, and of half widths
-// that
-//   hold with the confidence asked for, both seen through the fog. They hold those of other lights, to which
-//   what is sampled is added.
+//   that hold with the confidence asked for, both seen through the fog. They hold those of other lights, to
+//   which what is sampled is added.
 // - counts: kSampleCounts for each tile.
 // A work-item takes tile after tile from `next_tile`, which is 0 at first.
 KERNEL void sampled_light(SampleFrame frame, __global const float* position, __global const float* normal,
