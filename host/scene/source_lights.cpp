@@ -15,6 +15,7 @@
 #include "luciole/scene.hpp"
 #include "scene/glowing_patches.hpp"
 #include "scene/sky_cells.hpp"
+#include "scene/source_fault.hpp"
 
 namespace luciole {
 namespace {
@@ -134,24 +135,6 @@ void addGlow(const Scene& scene, const Object& object, std::vector<Light>& light
 
 }  // namespace
 
-/// What is wrong with a source, or "".
-static std::string faultOf(const LightSource& source, std::size_t groups) {
-  if (source.count > kMostSourceLights)
-    return fmt::format("count: {}, expected {} at most", source.count, kMostSourceLights);
-  if (source.group >= groups) return fmt::format("group: {}, expected below {}", source.group, groups);
-  const glm::vec3& color = source.radiance;
-  if (!(color.r >= 0 && color.g >= 0 && color.b >= 0 && std::isfinite(color.r + color.g + color.b)))
-    return "radiance: expected finite numbers of at least 0";
-  if (source.kind == SourceKind::kEnvironment) {
-    if (!std::isfinite(source.rotate)) return "rotate: expected a finite number";
-    return source.sky && !source.sky->levels.empty() ? "" : "sky: is missing";
-  }
-  if (!(source.width > 0 && source.height > 0 && std::isfinite(source.width * source.height)))
-    return "width, height: expected above 0";
-  const double length = glm::length(glm::cross(source.up, source.direction));
-  return length > 0 && std::isfinite(length) ? "" : "up: is parallel to the direction";
-}
-
 const LightSource* environmentOf(const Scene& scene) {
   const auto found = std::find_if(scene.sources.begin(), scene.sources.end(), [](const LightSource& source) {
     return source.kind == SourceKind::kEnvironment;
@@ -185,7 +168,7 @@ void addSourceLights(Scene& scene) {
   scene.lights.resize(own);
   for (std::size_t i = 0; i < scene.sources.size(); ++i) {
     LightSource& source = scene.sources[i];
-    if (const std::string fault = faultOf(source, scene.light_groups.size()); !fault.empty())
+    if (const std::string fault = sourceFault(source, scene.light_groups.size()); !fault.empty())
       throw InputError(fmt::format("{}: sources[{}].{}", scene.name, i, fault));
     if (source.count == 0) continue;
     Light like;

@@ -19,6 +19,7 @@
 #include "scene/models.hpp"
 #include "scene/place_limits.hpp"
 #include "scene/posing.hpp"
+#include "scene/source_fault.hpp"
 
 namespace luciole {
 namespace {
@@ -410,6 +411,31 @@ std::string lightMotionFault(const Scene& scene, const LightMotion& motion) {
                   motionFault("intensity", motion.intensity), motionFault("range", motion.range)});
 }
 
+/// Of a level and its numbers.
+std::string skyLevelFault(const SkyLevel& level) {
+  if (level.width < 1 || level.height < 1 || level.width > kLargestSide || level.height > kLargestSide)
+    return fmt::format("width, height: {}x{}, expected 1 to {} a side", level.width, level.height,
+                       kLargestSide);
+  const std::size_t count = 3 * std::size_t(level.width) * level.height;
+  if (level.texels.size() != count) return sizeFault("texels", level.texels.size(), count, "3 of a texel");
+  const bool are_light = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, count), true,
+      [&](const tbb::blocked_range<std::size_t>& range, bool so_far) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          so_far &= level.texels[i] >= 0 && level.texels[i] <= std::numeric_limits<float>::max();
+        return so_far;
+      },
+      [](bool one, bool other) { return one && other; });
+  return are_light ? "" : "texels: expected finite numbers of at least 0";
+}
+
+std::string skyFault(const Sky& sky) {
+  for (std::size_t i = 0; i < sky.levels.size(); ++i)
+    if (const std::string fault = skyLevelFault(sky.levels[i]); !fault.empty())
+      return fmt::format("sky.levels[{}].{}", i, fault);
+  return "";
+}
+
 std::string sourceMotionFault(const Scene& scene, const LightMotion& motion) {
   if (motion.light >= scene.sources.size())
     return wrongIndex("light", motion.light, "sources", scene.sources.size());
@@ -534,6 +560,31 @@ void checkAnimation(const Scene& scene) {
 
 }  // namespace
 
+std::string sourceFault(const LightSource& source, std::size_t groups) {
+  if (!isOneOf(source.kind, SourceKind::kDisc)) return wrong("kind", int(source.kind), "a SourceKind");
+  if (source.count > kMostSourceLights)
+    return fmt::format("count: {}, expected {} at most", source.count, kMostSourceLights);
+  if (source.group >= groups) return wrongIndex("group", source.group, "light_groups", groups);
+  if (areNegative(source.radiance)) return wrong("radiance", source.radiance, "numbers of at least 0");
+  if (source.kind == SourceKind::kEnvironment) {
+    if (!std::isfinite(source.rotate)) return wrong("rotate", source.rotate, "a finite number");
+    for (const SkyCell& cell : source.cells)
+      if (!areFinite(cell.direction) || areNegative(cell.light) ||
+          !(cell.solid_angle >= 0 && std::isfinite(cell.solid_angle)))
+        return "cells: one has numbers that are no light";
+    return source.sky && !source.sky->levels.empty() ? "" : "sky: is missing";
+  }
+  if (!glm::all(glm::lessThanEqual(glm::abs(source.position), glm::dvec3(kLargestNumber))))
+    return wrong("position", source.position, "numbers up to 1e18");
+  if (!(source.width > 0 && source.height > 0 && source.width <= kLargestNumber &&
+        source.height <= kLargestNumber))
+    return "width, height: expected above 0";
+  if (!areFinite(source.direction) || std::abs(glm::length(source.direction) - 1) > kUnitError)
+    return wrong("direction", source.direction, "a unit vector");
+  const double length = glm::length(glm::cross(source.up, source.direction));
+  return length > 0 && std::isfinite(length) ? "" : "up: is parallel to the direction";
+}
+
 std::string cameraFault(const Camera& camera) {
   const glm::dmat4& place = camera.camera_to_world;
   if (!isFinite(place)) return "camera_to_world: has a number that isn't finite";
@@ -586,6 +637,11 @@ void validateScene(const Scene& scene) {
            [&](std::size_t i) { return luminaireFault(scene.luminaires[i]); });
   checkAll(scene, "lights", scene.lights, [&](std::size_t i) {
     return lightFault(scene.lights[i], scene.luminaires.size(), scene.light_groups.size());
+  });
+  checkAll(scene, "sources", scene.sources, [&](std::size_t i) {
+    const LightSource& source = scene.sources[i];
+    return firstOf({sourceFault(source, scene.light_groups.size()),
+                    source.sky && source.kind == SourceKind::kEnvironment ? skyFault(*source.sky) : ""});
   });
   if (scene.source_lights > scene.lights.size())
     fail(scene, "", wrongIndex("source_lights", scene.source_lights, "lights", scene.lights.size()));
