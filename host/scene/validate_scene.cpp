@@ -565,11 +565,12 @@ std::string sourceFault(const LightSource& source, std::size_t groups) {
   if (source.count > kMostSourceLights)
     return fmt::format("count: {}, expected {} at most", source.count, kMostSourceLights);
   if (source.group >= groups) return wrongIndex("group", source.group, "light_groups", groups);
-  if (areNegative(source.radiance)) return wrong("radiance", source.radiance, "numbers of at least 0");
+  if (!areFinite(source.radiance) || areNegative(source.radiance))
+    return wrong("radiance", source.radiance, "numbers of at least 0");
   if (source.kind == SourceKind::kEnvironment) {
     if (!std::isfinite(source.rotate)) return wrong("rotate", source.rotate, "a finite number");
     for (const SkyCell& cell : source.cells)
-      if (!areFinite(cell.direction) || areNegative(cell.light) ||
+      if (!areFinite(cell.direction) || !areFinite(cell.light) || areNegative(cell.light) ||
           !(cell.solid_angle >= 0 && std::isfinite(cell.solid_angle)))
         return "cells: one has numbers that are no light";
     return source.sky && !source.sky->levels.empty() ? "" : "sky: is missing";
