@@ -266,8 +266,8 @@ def test_skies_and_faces_are_many_lights() -> None:
     scene = luciole.Scene(floor, lights=white, cameras=above)
     lit = luciole.render(scene, size=(16, 16)).rgb
     assert np.abs(lit - 1).max() < 0.03  # the horizon cuts some of the 1024 cells
-    few = luciole.render(scene, size=(16, 16), light_count=16).rgb
-    assert not np.array_equal(few, lit)
+    few = luciole.render(scene, size=(16, 16), light_count=15).rgb
+    assert not np.array_equal(few, lit)  # 15 cells can't meet at the horizon, as 16 do
     assert np.array_equal(luciole.render(scene, size=(16, 16)).rgb, lit)
     panel = luciole.AreaLight((0, 1, 0), (0, -1, 0), 0.5, 0.5, color=2.0, count=64)
     scene.lights = [panel, luciole.PointLights([(0, 2, 0)])]
