@@ -25,8 +25,8 @@ struct LightLayer {
   bool ambient = false;                                        ///< the scene's ambient light
   bool emission = false;
   bool illuminance = false;  ///< what surfaces get of it, as if they were white and there was no fog
-  bool fog = false;         ///< the fog's own colour; all light is seen through the fog
-  bool background = false;  ///< Scene::background, or the environment
+  bool fog = false;          ///< the fog's own colour; all light is seen through the fog
+  bool background = false;   ///< Scene::background, or the environment
 };
 
 /// The most layers of groups.

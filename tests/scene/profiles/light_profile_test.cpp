@@ -230,9 +230,11 @@ TEST(LightProfile, BadFilesAreRefusedInOneLine) {
   EXPECT_EQ(with("0 45 90", "0 45 190"),
             "lamp.ies: vertical angles go from 0 to 190, expected 0 to 180 at most");
   EXPECT_EQ(with("100 100 100", "100 100"),
-            "lamp.ies: line 10: candela value 3 is missing, expected a number from -1000000000000 to 1000000000000");
-  EXPECT_EQ(with("100 100 100", "100 1e400 100"),
-            "lamp.ies: line 9: candela value 2 is '1e400', expected a number from -1000000000000 to 1000000000000");
+            "lamp.ies: line 10: candela value 3 is missing, expected a number from -1000000000000 to "
+            "1000000000000");
+  EXPECT_EQ(
+      with("100 100 100", "100 1e400 100"),
+      "lamp.ies: line 9: candela value 2 is '1e400', expected a number from -1000000000000 to 1000000000000");
   EXPECT_EQ(with("1 3 1 1 2", "1 3 1 4 2"),
             "lamp.ies: line 5: the photometric type is '4', expected a number from 1 to 3");
   EXPECT_EQ(with("1 3 1 1 2", "1 3000 1000 1 2"),
