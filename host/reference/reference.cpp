@@ -91,7 +91,7 @@ double profileShare(const Luminaire& luminaire, const glm::dvec3& axis, const gl
     return 0;
   const auto [i, below] = entryAt(profile.polar, polar);
   const auto [j, beside] = entryAt(profile.azimuth, azimuth);
-  const auto row = [&](std::size_t at) {
+  const auto row = [&, j = j, beside = beside](std::size_t at) {
     const float* entry = &profile.candela[at * profile.azimuth.size() + j];
     return (1 - beside) * double(entry[0]) + beside * double(entry[1]);
   };

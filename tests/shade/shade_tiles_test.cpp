@@ -34,6 +34,7 @@ LitTiles litByTiles(OpenedDevice& device, const Lighting& lighting, const GBuffe
                            .tiles_y = gbuffer.tiles_y,
                            .block = block,
                            .lights = lighting.lights.light_buffer,
+                           .luminaires = lighting.lights.luminaire_buffer,
                            .tree = lighting.lights.tree_buffer,
                            .tree_stride = lighting.lights.tree.stride,
                            .image = image});

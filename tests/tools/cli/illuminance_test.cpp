@@ -103,7 +103,9 @@ TEST_F(IlluminanceCommand, KnowsShadows) {
   for (const LuxAt& row : rows) {
     const bool is_near = std::abs(row.x) < 1 && std::abs(row.z) < 1;
     dark += row.lux == 0;
-    if (!is_near) EXPECT_GT(row.lux, 1) << row.x << " " << row.z;
+    if (!is_near) {
+      EXPECT_GT(row.lux, 1) << row.x << " " << row.z;
+    }
   }
   EXPECT_EQ(dark, 4);
 }
