@@ -144,10 +144,13 @@ void measure(CommandContext& context, const IlluminanceOptions& options) {
     }
   const auto [least, most] = std::minmax_element(lux.begin(), lux.end());
   const double mean = std::accumulate(lux.begin(), lux.end(), 0.0) / double(lux.size());
-  const auto share = [](double a, double b) { return b > 0 ? a / b : 1.0; };
-  const std::string summary = fmt::format(
-      "{} points: mean {:.6g} lux, least {:.6g}, most {:.6g}; least/mean {:.4f}, least/most {:.4f}\n",
-      lux.size(), mean, *least, *most, share(*least, mean), share(*least, *most));
+  const std::string summary =
+      *most > 0 ? fmt::format(
+                      "{} points: mean {:.6g} lux, least {:.6g}, most {:.6g}; least/mean {:.4f}, "
+                      "least/most {:.4f}\n",
+                      lux.size(), mean, *least, *most, *least / mean, *least / *most)
+                : fmt::format("{} points: 0 lux, from where the corners of --plane run counter-clockwise\n",
+                              lux.size());
   if (options.output.empty() || options.output == "-")
     fmt::print("{}", csv);
   else

@@ -123,6 +123,17 @@ TEST_F(IlluminanceCommand, TellsMeanLeastAndUniformity) {
   EXPECT_EQ(rowsOf(readText(folder / "lux.csv")).size(), 1u);
 }
 
+TEST_F(IlluminanceCommand, SaysWhichSideItIsThatNoLightReaches) {
+  writeText(
+      folder / "lit.json",
+      R"({"lights": [{"type": "point", "position": [0, 3, 0], "color": 9, "attenuation": [0, 0, 1]}]})");
+  const auto result = run("luciole illuminance " + (folder / "lit.json") +
+                          " --plane=2,0,2:-2,0,2:-2,0,-2 --grid 4x4 -o " + (folder / "lux.csv"));
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err,
+              HasSubstr("1 points: 0 lux, from where the corners of --plane run counter-clockwise"));
+}
+
 TEST_F(IlluminanceCommand, FaultsOfItsGridAreTold) {
   writeText(folder / "lit.json", R"({"lights": []})");
   const auto fault = [&](const std::string& options) {
