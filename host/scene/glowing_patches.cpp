@@ -114,8 +114,9 @@ void cut(const Scene& scene, const GlowingTriangle& triangle, std::uint32_t numb
   for (int row = 0; row < steps; ++row)
     for (int i = 0; i < 2 * (steps - row) - 1; ++i) {
       // Every other one stands on its head.
+      const int column = i / 2;
       const double third = i % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-      const double v = (i / 2 + third) / steps, w = (row + third) / steps, u = 1 - v - w;
+      const double v = (column + third) / steps, w = (row + third) / steps, u = 1 - v - w;
       Piece piece{u * a + v * b + w * c, triangle.radiance, triangle.area / (double(steps) * steps), number};
       if (triangle.extent > 0)
         piece.radiance *=

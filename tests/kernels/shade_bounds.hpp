@@ -217,7 +217,7 @@ inline Interval wardInterval(const glm::dvec3& normal, const WayToLight& way, co
 /// h·X has L's error, V's 5 units, 2 of the sum, 6 of the product and 8 of X's length.
 inline Interval wardAnisotropicInterval(const glm::dvec3& normal, const WayToLight& way,
                                         const glm::dvec3& to_eye, const glm::dvec3& tangent,
-                                        const glm::dvec3& bitangent, glm::dvec2 alpha) {
+                                        const glm::dvec3& bitangent, const glm::dvec2& alpha) {
   const glm::dvec3 sum = way.unit + to_eye;
   const double error = way.error + 24 * kUnit;
   return wardInterval(normal, way, to_eye, {glm::dot(sum, tangent), error}, {glm::dot(sum, bitangent), error},
