@@ -1,17 +1,28 @@
 # Run when a test program is built: writes OUTPUT, which makes its suites entries of ctest. Tests of a suite share a process, the kernels that
 # it compiled and its devices. No process outlives a test (LUCIOLE_HELPERS).
-# PROGRAM: made with GoogleTest; APART: suites of which each test is an entry; CACHE: PoCL's.
+# PROGRAM: made with GoogleTest; APART: suites of which each test is an entry; SYSTEM: suites with label "system"; QUICK: suites whose kernels
+# aren't optimized; all three with commas between, or ".*"; CACHE: PoCL's.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
 # What follows a # are values of parameters.
 string(REGEX REPLACE " *#[^\n]*" "" list "${list}")
 string(REPLACE "\n" ";" list "${list}")
-string(REPLACE "," "|" apart "${APART}")
+foreach(which APART SYSTEM QUICK)
+  string(REPLACE "," "|" ${which} "(^|/)(${${which}})(/|$)")
+endforeach()
 set(entries "")
 foreach(line IN LISTS list)
   set(filter "")
   if(line MATCHES "^(.+)\\.$")
     set(suite ${CMAKE_MATCH_1})
-    string(REGEX MATCH "(^|/)(${apart})(/|$)" is_apart "${suite}")
+    string(REGEX MATCH "${APART}" is_apart "${suite}")
+    set(labels "")
+    if(suite MATCHES "${SYSTEM}")
+      set(labels "LABELS system")
+    endif()
+    set(environment "POCL_CACHE_DIR=${CACHE};LUCIOLE_HELPERS=0")
+    if(suite MATCHES "${QUICK}")
+      string(APPEND environment ";LUCIOLE_OPTIMIZE=0")
+    endif()
     if(NOT is_apart)
       set(name ${suite})
       set(filter "${suite}.*")
@@ -22,7 +33,7 @@ foreach(line IN LISTS list)
   endif()
   if(filter)
     string(APPEND entries "add_test(\"${name}\" \"${PROGRAM}\" \"--gtest_filter=${filter}\")\n"
-      "set_tests_properties(\"${name}\" PROPERTIES ENVIRONMENT \"POCL_CACHE_DIR=${CACHE};LUCIOLE_HELPERS=0\" FAIL_REGULAR_EXPRESSION \"Running 0 tests\"\n"
+      "set_tests_properties(\"${name}\" PROPERTIES ENVIRONMENT \"${environment}\" ${labels} FAIL_REGULAR_EXPRESSION \"Running 0 tests\"\n"
       "  SKIP_REGULAR_EXPRESSION \"PASSED  . 0 tests[.]\\n.  SKIPPED\")\n")
   endif()
 endforeach()

@@ -9,6 +9,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <optional>
@@ -193,6 +194,8 @@ void openDevice(const std::string& selector, OpenedDevice& device) {
   const FoundDevice& chosen = found[selectDevice(descriptions, selector)];
   device.description = chosen.description;
   device.selector = selector;
+  const char* const optimize = std::getenv("LUCIOLE_OPTIMIZE");
+  device.optimizes = !optimize || std::string_view(optimize) != "0";
   device.program_cache = programCacheOf(chosen.description.platform);
   if (chosen.description.platform == kPoclPlatform) device.pocl_cache = poclCache();
   if (const std::size_t suffix = selector.find(kLanesSuffix); suffix != std::string::npos) {

@@ -45,6 +45,8 @@ struct OpenedDevice {
   /// Whether programs that PoCL hasn't kept are compiled without optimization. That takes a third of the time
   /// and gives the same bits, but they run some six times as long.
   bool compiles_quickly = false;
+  /// False, by LUCIOLE_OPTIMIZE=0 in the environment: PoCL's programs are all compiled quickly.
+  bool optimizes = true;
   /// Whether pictures are lit by the general program (generalFeatures) instead of their own.
   bool lights_generally = false;
   /// The program file whose command `compile` compiles for this device in a process of its own (see

@@ -36,7 +36,7 @@ Program build(const OpenedDevice& device, const std::string& source, std::string
   if (device.pocl_cache.empty()) return buildProgram(device, source, options);
   std::string description = describeProgram(device, source, options);
   bool is_listed = isListed(device.pocl_cache, description);
-  const bool quickly = device.compiles_quickly && !is_listed;
+  const bool quickly = compilesQuickly(device) && !is_listed;
   if (quickly) {
     options += kQuickly;
     description = describeProgram(device, source, options);
@@ -150,8 +150,10 @@ bool isCompiled(const OpenedDevice& device, const std::string& file, const std::
   const auto is_kept = [&](const std::string& with) {
     return isListed(device.pocl_cache, describeProgram(device, source, with));
   };
-  return is_kept(options) || (device.compiles_quickly && is_kept(options + kQuickly));
+  return is_kept(options) || (compilesQuickly(device) && is_kept(options + kQuickly));
 }
+
+bool compilesQuickly(const OpenedDevice& device) { return device.compiles_quickly || !device.optimizes; }
 
 bool hasQuickPrograms(OpenedDevice& device) {
   const std::lock_guard lock(device.programs_mutex);

@@ -156,6 +156,9 @@ Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, con
 bool isCompiled(const OpenedDevice& device, const std::string& file, const std::string& defines,
                 const std::string& user_text = {});
 
+/// Whether a program that PoCL hasn't kept is compiled without optimization.
+bool compilesQuickly(const OpenedDevice& device);
+
 /// Whether any program of the device was compiled quickly.
 bool hasQuickPrograms(OpenedDevice& device);
 

@@ -13,6 +13,7 @@
 
 #include "cl/kernel_source.hpp"
 #include "messages.hpp"
+#include "setting.hpp"
 
 namespace luciole::test {
 namespace {
@@ -67,6 +68,31 @@ TEST_F(MakeKernel, ProgramsAreBuiltOnceADevice) {
   EXPECT_EQ(device.programs.size(), 1u);
   makeKernelFromSource(device, source, "probe", "-DVALUE=2");
   EXPECT_EQ(device.programs.size(), 2u);
+}
+
+TEST_F(MakeKernel, WithoutOptimizationThereIsAnotherProgramOfTheSameBits) {
+  if (device.pocl_cache.empty()) GTEST_SKIP() << "the default device isn't PoCL's";
+  // No driver has kept programs of this define.
+  const std::string defines =
+      fmt::format("-DMOMENT={}", std::chrono::steady_clock::now().time_since_epoch().count());
+  const std::string source =
+      "__kernel void probe(__global float *out) { *out = sqrt(1.0f / (float)(MOMENT % 1000 + 1)) + 0.1f * "
+      "(float)(MOMENT % 977); }\n";
+  float values[] = {3, 3};
+  for (const int optimizes : {0, 1}) {
+    const Setting setting("LUCIOLE_OPTIMIZE", std::to_string(optimizes));
+    OpenedDevice opened;
+    openDevice("", opened);
+    Kernel kernel = makeKernelFromSource(opened, source, "probe", defines);
+    EXPECT_EQ(hasQuickPrograms(opened), !optimizes) << "LUCIOLE_OPTIMIZE=" << optimizes;
+    std::vector<float> value(1, 3.0f);
+    const Buffer<float> out = borrowedForOutput(opened, value);
+    launch(opened, kernel, {{"out", out}}, {.items = 1});
+    download(opened, out, value);
+    values[optimizes] = value[0];
+  }
+  EXPECT_NE(values[0], 3);
+  EXPECT_EQ(values[0], values[1]);
 }
 
 TEST_F(MakeKernel, AKernelThatTheProgramLacksIsTold) {

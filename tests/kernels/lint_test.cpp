@@ -237,6 +237,8 @@ TEST(KernelLint, OnlyArithmeticThatTheStandardFixes) {
   for (const int lanes : kAllLanes)
     for (const char* machine :
          {"", "-march=x86-64-v3", "-march=x86-64-v4", "-DOWN_QUOTIENTS", "-DSTANDARD_ONLY"}) {
+      // Only the widths of their registers have lines of their own for these machines.
+      if (std::string_view(machine).starts_with("-march") && lanes < 8) continue;
       for (const auto& entry : std::filesystem::recursive_directory_iterator(
                std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
         if (entry.path().extension() != ".cl") continue;

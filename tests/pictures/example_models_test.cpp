@@ -36,7 +36,7 @@ TEST(ExampleModels, WardsFileHasTheBitsOfTheBuiltInModelAtEveryWidth) {
     settings.shade.model = Model::kWard;
     const Image built_in = picture(scene, settings);
     settings.shade.model = addUserModel(exampleModel("ward"), scene);
-    for (const int lanes : kAllLanes)
+    for (const int lanes : widths())
       EXPECT_EQ(picture(scene, settings, deviceWithLanes(lanes)).pixels, built_in.pixels)
           << lights << " lights, " << lanes << " lanes";
   }

@@ -12,6 +12,7 @@
 #include "kernels/probe.hpp"
 #include "kernels/shade_bounds.hpp"
 #include "lighting/light_gbuffer.hpp"
+#include "long_run.hpp"
 #include "pictures/scene_hunt.hpp"
 #include "reference/reference.hpp"
 #include "render/plan.hpp"
@@ -275,7 +276,7 @@ TEST(Property, WhatOpenCLLeavesOpenChangesNothing) {
                     return fmt::format("arithmetic {}: {}", which, *different);
                 return std::nullopt;
               }},
-             firstSeed(), 12, step);
+             firstSeed(), longRun() ? 12 : 6, step);
     EXPECT_FALSE(failure) << *failure;
   }
 }

@@ -35,7 +35,7 @@ TEST_P(ShadowMethods, PictureIsTheSameForEveryCullingTileAndWidth) {
     return renderScene(deviceWithLanes(lanes), scene, settings, stats).pixels;
   };
   const auto expected = render(16, Culling::kTiles, 4);
-  for (const int lanes : kAllLanes) {
+  for (const int lanes : widths()) {
     // A program of its own.
     if (lanes == 1 || lanes == 16) {
       EXPECT_EQ(render(lanes, Culling::kNone, 4), expected) << lanes << " lanes";

@@ -116,7 +116,7 @@ TEST(UserModels, OfMaterialsStandBesideBuiltInOnes) {
   moved.materials[0].model = add(movedModels().at(Model::kCookTorrance), moved, "a.clh");
   moved.materials[1].model = add(movedModels().at(Model::kOrenNayar), moved, "b.clh");
   const Image truth = picture(built_in, settingsBy(Model::kPhong, built_in));
-  for (const int lanes : kAllLanes)
+  for (const int lanes : widths())
     EXPECT_EQ(picture(moved, settingsBy(Model::kPhong, moved), deviceWithLanes(lanes)).pixels, truth.pixels)
         << lanes << " lanes";
   moved.materials[1].model = Model::kOrenNayar;

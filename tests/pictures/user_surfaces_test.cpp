@@ -89,7 +89,7 @@ TEST_P(UserSurfaces, BandsCropsAndWidthsChangeNoBit) {
   settings.band_height = 16;
   EXPECT_EQ(picture(scene, settings).pixels, whole.pixels) << "bands";
   settings.band_height = 0;
-  for (const int lanes : kAllLanes)
+  for (const int lanes : widths())
     EXPECT_EQ(picture(scene, settings, deviceWithLanes(lanes)).pixels, whole.pixels) << lanes << " lanes";
   settings.crop = Crop{13, 9, 41, 30};
   const Image part = picture(scene, settings);

@@ -99,7 +99,7 @@ TEST(SampledLight, IsTheSameBitsAtEveryWidthAndEveryTime) {
   EXPECT_EQ(countOf(stats, "lights_sampled"), 900u);
   EXPECT_GT(countOf(stats, "sampled_rays"), 10u * countOf(stats, "pixels_lit"));
   EXPECT_EQ(picture(sampledScene(), settings).pixels, first.pixels) << "twice";
-  for (const int lanes : kAllLanes) {
+  for (const int lanes : widths()) {
     Stats other;
     const Image image = renderScene(deviceWithLanes(lanes), sampledScene(), settings, other);
     EXPECT_TRUE(image.pixels == first.pixels) << lanes << " lanes";
@@ -113,7 +113,7 @@ TEST(SampledLight, OfSkiesAndFacesIsTheSameBitsAtEveryWidth) {
   Stats stats;
   const Image first = renderScene(testDevice(), skyScene(), settings, stats);
   EXPECT_EQ(countOf(stats, "lights_sampled"), skyScene().lights.size());
-  for (const int lanes : kAllLanes) {
+  for (const int lanes : widths()) {
     Stats other;
     EXPECT_TRUE(renderScene(deviceWithLanes(lanes), skyScene(), settings, other).pixels == first.pixels)
         << lanes << " lanes";

@@ -71,7 +71,7 @@ RenderSettings screened(const Scene& scene, glm::ivec2 size, const std::vector<S
 
 TEST(Screens, OneThatReturnsTheColorLeavesEveryBit) {
   const Scene scene = sceneFromJson(kScreensScene);
-  for (const int lanes : kAllLanes) {
+  for (const int lanes : widths()) {
     for (const float exposure : {0.0f, 0.3f}) {
       RenderSettings settings = screened(scene, {77, 43}, {});
       settings.exposure = exposure;

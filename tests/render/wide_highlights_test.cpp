@@ -66,7 +66,7 @@ TEST_P(WideHighlights, AgreeWithTheDoublePrecisionReference) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Lanes, WideHighlights, testing::ValuesIn(kAllLanes),
+INSTANTIATE_TEST_SUITE_P(Lanes, WideHighlights, testing::ValuesIn(widths()),
                          testing::PrintToStringParamName());
 
 // The smaller exponent is the surface's own, and its light one times what it was.

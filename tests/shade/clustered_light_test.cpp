@@ -136,7 +136,7 @@ Lights lightsIn(const glm::dvec3& low, const glm::dvec3& high, int count, Random
 }
 
 class ClusteredLight : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Lanes, ClusteredLight, testing::ValuesIn(kAllLanes),
+INSTANTIATE_TEST_SUITE_P(Lanes, ClusteredLight, testing::ValuesIn(widths()),
                          testing::PrintToStringParamName());
 
 TEST_P(ClusteredLight, IsWithinItsBoundOfTheTruthAtEveryPixel) {

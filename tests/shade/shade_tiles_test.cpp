@@ -210,7 +210,7 @@ TEST_P(ShadeTiles, GiveTheBitsOfListsForAHundredThousandLights) {
   expectBitsOfLists(device, scene, gbuffer, Model::kPhong);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lanes, ShadeTiles, testing::ValuesIn(kAllLanes), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Lanes, ShadeTiles, testing::ValuesIn(widths()), testing::PrintToStringParamName());
 
 TEST(ShadeTiles, BlocksAreAsLargeAsThereAreEnoughOf) {
   for (const std::size_t threads : {1, 2, 64}) {

@@ -123,7 +123,7 @@ TEST(ShadowWays, AMixedPictureIsTheSameForEveryCullingTileWidthBandAndCrop) {
   settings.aovs = {Aov::kShadow};
   settings.shade.shadow_ways = {ShadowWay::kMap, ShadowWay::kBeams, ShadowWay::kNone};
   const Image expected = picture(scene, settings, deviceWithLanes(16));
-  for (const int lanes : kAllLanes) {
+  for (const int lanes : widths()) {
     settings.shade.culling = lanes == 16 ? Culling::kNone : Culling::kTiles;
     settings.shade.tile_size = lanes == 4 ? 8 : 4;
     EXPECT_EQ(picture(scene, settings, deviceWithLanes(lanes)).pixels, expected.pixels) << lanes << " lanes";

@@ -47,6 +47,9 @@ const Terms kManualVariables{
      "meanwhile, and the first picture is made by a general program, or by kernels that are compiled in a "
      "third of the time, with the same bits, but run slower: then one compiles the fast ones when the "
      "command has ended, at the lowest priority, for some seconds"},
+    {"LUCIOLE_OPTIMIZE",
+     "0: PoCL optimizes no kernels. Most are compiled in a third to half of the time, with the same bits, "
+     "but run slower: for many small pictures with kernels of their own, as tests make them"},
     {"XDG_CACHE_HOME, HOME", "the folder of caches is the first, or .cache in the second"},
     {"OCL_ICD_VENDORS", "read by the OpenCL loader: where it looks for devices' drivers"}};
 

@@ -48,7 +48,7 @@ std::string keptPlace(const OpenedDevice& device) {
   const std::string description =
       describeProgram(device, kernelSource(kKernelFile),
                       fmt::format("{} -DLANES={}{}", device.arithmetic, device.description.lanes,
-                                  device.compiles_quickly ? " quickly" : ""));
+                                  compilesQuickly(device) ? " quickly" : ""));
   Sha256 hash;
   hash.add(description.data(), description.size());
   return std::filesystem::path(folder) / hash.hex();

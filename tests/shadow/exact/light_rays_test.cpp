@@ -82,7 +82,7 @@ std::size_t expectTheHosts(const std::shared_ptr<const TriangleTree>& tree, cons
   std::vector<bool> blocked;
   for (const LightRay& ray : pairs.rays)
     blocked.push_back(isBlocked(*tree, pairs.starts[ray.point], pairs.lights[ray.light], neverAsked));
-  for (const int lanes : kAllLanes) {
+  for (const int lanes : widths()) {
     const Traced traced = trace(deviceWithLanes(lanes), tree, pairs, nullptr, more_defines);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < pairs.rays.size(); ++i) wrong += traced.isLit(i) == blocked[i];
@@ -307,7 +307,7 @@ TEST(LightRays, ThroughHolesMasksDecideNearlyAllAndTexturesTheRest) {
   BeamScene host;
   host.tree = tree;
   const std::vector<float> starts = planesOf(pairs);
-  for (const int lanes : kAllLanes) {
+  for (const int lanes : widths()) {
     Traced traced = trace(deviceWithLanes(lanes), tree, pairs, masks);
     std::size_t wrong = 0, unsure = 0, both = 0;
     for (std::size_t i = 0; i < pairs.rays.size(); ++i) {
@@ -334,7 +334,7 @@ TEST(LightRays, StartWhereBeamsDo) {
     if (lifted)
       for (std::size_t i = 0; i < gbuffer.pixels(); ++i)
         gbuffer.lift.push_back(float(random.between(0, 0.1)));
-    for (const int lanes : kAllLanes) {
+    for (const int lanes : widths()) {
       OpenedDevice& device = deviceWithLanes(lanes);
       auto tree = std::make_shared<TriangleTree>(*sharedTree(randomTriangles(5, 0.5f, 1)));
       tree->scale = 0.25f;
