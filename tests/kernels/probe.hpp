@@ -37,7 +37,7 @@ inline std::vector<int> lanesFor(const std::string& defines) {
 }
 
 /// The default device with that many lanes, opened once a process. Only at 16 lanes, the width of most
-/// processors, are its programs optimized: the others, compiled in a third of the time, have the same bits.
+/// processors, are its programs optimized: the others, compiled sooner, have the same bits.
 /// LUCIOLE_LONG has all of them optimized.
 inline OpenedDevice& deviceWithLanes(int lanes) {
   static std::map<int, OpenedDevice> devices;

@@ -125,7 +125,7 @@ TEST(ShadowWays, AMixedPictureIsTheSameForEveryCullingTileWidthBandAndCrop) {
   const Image expected = picture(scene, settings, deviceWithLanes(16));
   for (const int lanes : widths()) {
     settings.shade.culling = lanes == 16 ? Culling::kNone : Culling::kTiles;
-    settings.shade.tile_size = lanes == 4 ? 8 : 4;
+    settings.shade.tile_size = lanes == 1 ? 8 : 4;
     EXPECT_EQ(picture(scene, settings, deviceWithLanes(lanes)).pixels, expected.pixels) << lanes << " lanes";
   }
   settings.shade.culling = Culling::kTiles;
