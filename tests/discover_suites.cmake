@@ -1,12 +1,12 @@
 # Run when a test program is built: writes OUTPUT, which makes its suites entries of ctest. Tests of a suite share a process, the kernels that
 # it compiled and its devices. No process outlives a test (LUCIOLE_HELPERS).
 # PROGRAM: made with GoogleTest; APART: suites of which each test is an entry; SYSTEM: suites with label "system"; QUICK: suites whose kernels
-# aren't optimized; all three with commas between, or ".*"; CACHE: PoCL's.
+# aren't optimized; OWN: suites whose pictures aren't lit by the general program; all with commas between, or ".*"; CACHE: PoCL's.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
 # What follows a # are values of parameters.
 string(REGEX REPLACE " *#[^\n]*" "" list "${list}")
 string(REPLACE "\n" ";" list "${list}")
-foreach(which APART SYSTEM QUICK)
+foreach(which APART SYSTEM QUICK OWN)
   string(REPLACE "," "|" ${which} "(^|/)(${${which}})(/|$)")
 endforeach()
 set(entries "")
@@ -22,6 +22,9 @@ foreach(line IN LISTS list)
     set(environment "POCL_CACHE_DIR=${CACHE};LUCIOLE_HELPERS=0")
     if(suite MATCHES "${QUICK}")
       string(APPEND environment ";LUCIOLE_OPTIMIZE=0")
+    endif()
+    if(NOT suite MATCHES "${OWN}")
+      string(APPEND environment ";LUCIOLE_GENERAL=1")
     endif()
     if(NOT is_apart)
       set(name ${suite})

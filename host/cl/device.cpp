@@ -194,8 +194,12 @@ void openDevice(const std::string& selector, OpenedDevice& device) {
   const FoundDevice& chosen = found[selectDevice(descriptions, selector)];
   device.description = chosen.description;
   device.selector = selector;
-  const char* const optimize = std::getenv("LUCIOLE_OPTIMIZE");
-  device.optimizes = !optimize || std::string_view(optimize) != "0";
+  const auto is_set = [](const char* name, std::string_view to) {
+    const char* const value = std::getenv(name);
+    return value && value == to;
+  };
+  device.optimizes = !is_set("LUCIOLE_OPTIMIZE", "0");
+  device.always_lights_generally = is_set("LUCIOLE_GENERAL", "1");
   device.program_cache = programCacheOf(chosen.description.platform);
   if (chosen.description.platform == kPoclPlatform) device.pocl_cache = poclCache();
   if (const std::size_t suffix = selector.find(kLanesSuffix); suffix != std::string::npos) {

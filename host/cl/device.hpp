@@ -47,8 +47,11 @@ struct OpenedDevice {
   bool compiles_quickly = false;
   /// False, by LUCIOLE_OPTIMIZE=0 in the environment: PoCL's programs are all compiled quickly.
   bool optimizes = true;
-  /// Whether pictures are lit by the general program (generalFeatures) instead of their own.
+  /// Whether pictures are lit by the general program (generalFeatures), where it may take the place of their
+  /// own.
   bool lights_generally = false;
+  /// True by LUCIOLE_GENERAL=1 in the environment: all are.
+  bool always_lights_generally = false;
   /// The program file whose command `compile` compiles for this device in a process of its own (see
   /// compile_helper.hpp); empty: none does.
   std::string helper;

@@ -162,14 +162,15 @@ std::future<double> startCompiling(OpenedDevice& device, const std::vector<Featu
     const double work = pairsOf16Lanes(pairs, device);
     const bool is_followed = !device.helper.empty() && device.makes_one_picture;
     const bool has_general = is_followed && isKept(device, generalFeatures(), settings);
-    device.lights_generally = has_general && work <= kMostGeneralPairs &&
-                              std::all_of(programs.begin(), programs.end(), isGeneral) &&
-                              !std::all_of(programs.begin(), programs.end(), [&](const FeatureSet& own) {
-                                return isKept(device, own, settings);
-                              });
+    const bool awaits_own = has_general && work <= kMostGeneralPairs &&
+                            std::all_of(programs.begin(), programs.end(), isGeneral) &&
+                            !std::all_of(programs.begin(), programs.end(), [&](const FeatureSet& own) {
+                              return isKept(device, own, settings);
+                            });
+    device.lights_generally = awaits_own || device.always_lights_generally;
     device.compiles_quickly = is_followed && work <= kMostQuickPairs;
-    const CompileTask picture{
-        device.lights_generally ? std::vector{generalFeatures()} : programs, settings, {.counts = true}};
+    CompileTask picture{{}, settings, {.counts = true}};
+    for (const FeatureSet& features : programs) picture.programs.push_back(programFor(device, features));
     HelperProcess helper;
     startBeams(device, picture, helper);
     for (const FeatureSet& features : picture.programs)
@@ -182,7 +183,10 @@ std::future<double> startCompiling(OpenedDevice& device, const std::vector<Featu
     for (const FeatureSet& features : picture.programs)
       compileKernels(device, features, settings, {.others = false});
     CompileTask left{{}, settings, picture.choice};
-    if (device.lights_generally || hasQuickPrograms(device)) left.programs = programs;
+    if (awaits_own)
+      left.programs = programs;
+    else if (hasQuickPrograms(device))
+      left.programs = picture.programs;
     if (is_followed && !has_general) left.programs.push_back(generalFeatures());
     if (!left.programs.empty()) device.left_over = argumentsOf(device, left);
     return endStage(Stage::kCompileKernels, begin);

@@ -48,6 +48,10 @@ std::size_t bytesOf(const StageInput& input, const BoundedLight& bounded, const 
 
 }  // namespace
 
+FeatureSet programFor(const OpenedDevice& device, const FeatureSet& features) {
+  return device.lights_generally && isGeneral(features) ? generalFeatures() : features;
+}
+
 LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& lighting, LightPass pass,
                        Stats& stats) {
   const FeatureSet& features = pass.features;
@@ -56,7 +60,7 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   const LightLists no_lists;
   LitPlanes lit;
   BoundedLight bounded;
-  const FeatureSet compiled = device.lights_generally ? generalFeatures() : features;
+  const FeatureSet compiled = programFor(device, features);
   Points points = pointsOnDevice(device, pass.gbuffer, compiled, lighting.unlit);
   const StageInput input{
       device, scene, lighting, pass, compiled, points, by_lists ? lighting.lists : no_lists};

@@ -47,6 +47,9 @@ struct LightPass {
   Plane recycled = {};  ///< a plane whose memory the colours take
 };
 
+/// The program by which this device lights G-buffers with these features: their own, or the general one.
+FeatureSet programFor(const OpenedDevice& device, const FeatureSet& features);
+
 /// Lights one G-buffer: culls lights, computes shadows and shades. Draws the texels of shadow maps that it
 /// looks up, unless an earlier call did. Adds the times of its stages to `stats`, and raises
 /// stats.device_bytes to the bytes of its buffers. Throws MachineError.

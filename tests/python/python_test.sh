@@ -16,6 +16,9 @@ build=$(cd "$1" && pwd)
 place=$build/python
 python=$place/venv/bin/python
 prefix=$place/prefix
+# The package of the checkout, compiled once, against what is installed there.
+against_prefix=(--config-setting=cmake.source-dir=host/python --config-setting=cmake.define.CMAKE_PREFIX_PATH="$prefix"
+  --config-setting=build-dir="$place/extension")
 # Nothing outside the build folder is written.
 export PYTHONPYCACHEPREFIX=$place/pycache PIP_DISABLE_PIP_VERSION_CHECK=1
 mkdir -p "$place"
@@ -78,9 +81,7 @@ case $2 in
   install)
     installTools
     quietly cmake --install "$build" --prefix "$prefix"
-    quietly "$python" -m pip install --no-build-isolation --no-deps --force-reinstall "$checkout" \
-      --config-settings=cmake.source-dir=host/python --config-settings=cmake.define.CMAKE_PREFIX_PATH="$prefix" \
-      --config-settings=build-dir="$place/extension"
+    quietly "$python" -m pip install --no-build-isolation --no-deps --force-reinstall "$checkout" "${against_prefix[@]}"
     rm -f "$place/reason"
     exit
     ;;
@@ -110,7 +111,8 @@ case $2 in
       ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1
     ;;
   wheel)
-    # With LUCIOLE_LONG the library is built too; else the wheel holds the build folder's, and what is compiled of it must be in the sources.
+    # With LUCIOLE_LONG the library is built too; else the wheel is made of what test `install` compiled and of the build folder's library,
+    # and the sources must hold what that was compiled of.
     rm -rf "$place/dist" "$place/sources"
     quietly "$python" -m build --sdist --no-isolation --outdir "$place/dist" "$checkout"
     mkdir "$place/sources"
@@ -119,8 +121,7 @@ case $2 in
       quietly "$python" -m build --wheel --no-isolation --outdir "$place/dist" "$place/sources"
     else
       sourcesHoldWhatIsCompiled
-      quietly "$python" -m build --wheel --no-isolation --outdir "$place/dist" "$place/sources" \
-        --config-setting=cmake.source-dir=host/python --config-setting=cmake.define.CMAKE_PREFIX_PATH="$prefix"
+      quietly "$python" -m build --wheel --no-isolation --outdir "$place/dist" "$checkout" "${against_prefix[@]}"
     fi
     wheel=("$place"/dist/luciole-*.whl)
     contents=$("$python" -m zipfile -l "${wheel[0]}")

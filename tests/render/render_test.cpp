@@ -11,6 +11,7 @@
 #include "luciole/error.hpp"
 #include "reference/reference.hpp"
 #include "render_json.hpp"
+#include "setting.hpp"
 
 namespace luciole::test {
 namespace {
@@ -59,6 +60,38 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
       worst = std::max(worst, std::abs(double(ours.pixels[i]) - truth.pixels[i]));
     EXPECT_LE(worst, tolerance);
   }
+}
+
+TEST(Render, WhereAllPicturesAreLitGenerallyScenesShareAProgramAndHaveTheBitsOfTheirOwn) {
+  Scene foggy = sceneFromJson(kRenderScene), matte = foggy, mapped = foggy;
+  matte.fog = {};
+  for (Material& material : matte.materials) material.specular = {};
+  for (Light& light : mapped.lights) light.shadow = true;
+  RenderSettings settings;
+  settings.size = {64, 36};
+  settings.camera = foggy.cameras.front();
+  OpenedDevice device;
+  {
+    const Setting setting("LUCIOLE_GENERAL", "1");
+    openDevice("", device);
+  }
+  const auto same = [&](const Scene& scene) {
+    Stats stats;
+    return renderScene(device, scene, settings, stats).pixels ==
+           renderScene(testDevice(), scene, settings, stats).pixels;
+  };
+  EXPECT_TRUE(same(foggy));
+  const std::size_t programs = device.programs.size();
+  EXPECT_TRUE(same(matte));
+  EXPECT_EQ(device.programs.size(), programs);
+  // Shadow maps aren't in it: that picture has a program of its own, and those after it have not.
+  settings.shade.shadows = ShadowMethod::kHard;
+  EXPECT_TRUE(same(mapped));
+  EXPECT_GT(device.programs.size(), programs);
+  settings.shade.shadows = ShadowMethod::kAuto;
+  const std::size_t more = device.programs.size();
+  EXPECT_TRUE(same(matte));
+  EXPECT_EQ(device.programs.size(), more);
 }
 
 TEST(Render, PairsAreCountedInAStageOfTheirOwnAndOnlyWhenAskedFor) {

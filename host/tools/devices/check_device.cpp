@@ -217,14 +217,14 @@ ArithmeticCheck checkArithmetic(OpenedDevice& device) {
 
 ArithmeticCheck knownArithmetic(OpenedDevice& device) {
   const std::string place = keptPlace(device);
+  ArithmeticCheck check;
   if (!place.empty() && isFile(place)) {
     std::istringstream lines(readFile(place));
-    ArithmeticCheck kept;
-    std::getline(lines, kept.sha256);
-    for (std::string line; std::getline(lines, line);) kept.wrong.push_back(line);
-    if (kept.sha256.size() == 64) return kept;
+    std::getline(lines, check.sha256);
+    for (std::string line; std::getline(lines, line);) check.wrong.push_back(line);
+    if (check.sha256.size() == 64) return check;
   }
-  const ArithmeticCheck check = checkArithmetic(device);
+  check = checkArithmetic(device);
   if (place.empty()) return check;
   std::string text = check.sha256 + "\n";
   for (const std::string& line : check.wrong) text += line + "\n";

@@ -169,6 +169,8 @@ TestBuildsAllAndPassesArgumentsOn() {
   launch test -R "Two Words"
   expect "target" "$(grep '^ninja' "$calls" | sed 's/.* //')" "'all'"
   expect "arguments of ctest" "$(grep '^ctest' "$calls" | sed "s/.*'-j' '[0-9]*' //")" "'-R' 'Two Words'"
+  LUCIOLE_TESTS=some_tests launch test
+  expect "target that was named" "$(grep '^ninja' "$calls" | tail -n 1 | sed 's/.* //')" "'some_tests'"
 }
 
 TestPackagesThatTheArchiveLacksAreLeftOutAndTold() {

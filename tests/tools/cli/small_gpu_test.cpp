@@ -35,7 +35,7 @@ std::string picture(const std::string& scene, const std::string& size, const std
 
 TEST_F(SmallGpu, MakesThePicturesOfAnyDevice) {
   LUCIOLE_NEEDS_PROGRAM("cc", "gcc");
-  const std::string hashes = readText(LUCIOLE_SOURCE_DIR "/tests/tools/cli/hashes.json");
+  const std::string hashes = readText(LUCIOLE_SOURCE_DIR "/tests/tools/devices/hashes.json");
   for (const char* scene : {"city", "colonnade", "cornell", "fireflies", "spheres", "underwater"})
     for (const char* shadows : {"hard", "exact"}) {
       const std::string out =

@@ -16,7 +16,7 @@ namespace {
 
 const nlohmann::ordered_json& hashes() {
   static const auto parsed = nlohmann::ordered_json::parse(
-      readText(std::string(LUCIOLE_SOURCE_DIR) + "/tests/tools/cli/hashes.json"));
+      readText(std::string(LUCIOLE_SOURCE_DIR) + "/tests/tools/devices/hashes.json"));
   return parsed;
 }
 

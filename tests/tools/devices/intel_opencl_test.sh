@@ -5,7 +5,7 @@
 set -euo pipefail
 
 luciole=$(realpath "$1")
-cli_test=$(realpath "$3")
+devices_test=$(realpath "$3")
 place=$2/intel_opencl
 packages=(intel-opencl-rt intel-cmplr-lib-rt tbb tcmlib)
 
@@ -31,7 +31,7 @@ echo "$place/lib/libintelocl.so" >"$place/vendors/intel.icd"
 export OCL_ICD_VENDORS=$place/vendors XDG_CACHE_HOME=$place/cache LD_LIBRARY_PATH=$place/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 
 "$luciole" devices --check
-"$cli_test" --gtest_filter='Scenes/SceneHashes.*'
+"$devices_test" --gtest_filter='Scenes/SceneHashes.*'
 
 # With PoCL beside it, where that is.
 icds=(/etc/OpenCL/vendors/pocl*.icd)
