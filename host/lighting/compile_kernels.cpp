@@ -88,7 +88,7 @@ void compileShadows(OpenedDevice& device, const LightPass& pass, const ShadeSett
   const Scene nothing;
   Lighting lighting;
   prepareNoBeams(device, features, settings, lighting.beams);
-  const Points points = pointsOnDevice(device, pass.gbuffer, features, false);
+  const Points points = pointsOnDevice(device, pass.gbuffer, features, features, false);
   LightLists empty_list;
   empty_list.tiles = 1;
   reserve(device, 2, empty_list.starts);

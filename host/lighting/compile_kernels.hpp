@@ -28,8 +28,9 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
 /// is open, then calls OpenedDevice::self_check. Where the device has a helper (compile_helper.hpp) it
 /// compiles beams meanwhile; and if the device makes one picture, of not too many pairs of a point and a
 /// light, it is lit by the general program in the place of programs that PoCL hasn't kept, or these are
-/// compiled quickly. OpenedDevice::left_over is set to what PoCL lacks, with the general program. The
-/// future's value is the milliseconds that it took. Its destructor waits for the thread, which refers to the
+/// compiled quickly. OpenedDevice::left_over is set to what PoCL lacks, with the general program. Where
+/// OpenedDevice::always_lights_generally is set, the general program replaces all that it can. The future's
+/// value is the milliseconds that it took. Its destructor waits for the thread, which refers to the
 /// arguments.
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
                                    const ShadeSettings& settings, double pairs,

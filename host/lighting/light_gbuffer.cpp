@@ -61,13 +61,15 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   LitPlanes lit;
   BoundedLight bounded;
   const FeatureSet compiled = programFor(device, features);
-  Points points = pointsOnDevice(device, pass.gbuffer, compiled, lighting.unlit);
+  Points points = pointsOnDevice(device, pass.gbuffer, features, compiled, lighting.unlit);
   const StageInput input{
       device, scene, lighting, pass, compiled, points, by_lists ? lighting.lists : no_lists};
   if (by_lists) timed(stats, Stage::kCull, [&] { cullLights(input, lighting.lists); });
   if (features.shadowMaps()) drawNeededMaps(input, lighting.maps, stats);
   if (features.has(Feature::kExact) && lighting.beams.tree) computeExactShadows(input, lit, stats);
   ShadeFrame frame = pass.lights.frame;
+  // What a layer, or light at vertices, leaves out, the general program leaves out, too.
+  if (!seesFog(features)) frame.fog_mode = kNoFog;
   frame.plane_stride = static_cast<uint>(points.stride);
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(lighting.maps.host.texels.size(), 1));
   if (features.lightError()) {

@@ -22,9 +22,11 @@ struct Points {
   std::size_t bytes;   ///< of all planes
 };
 
-/// Borrows the planes that the features need. unlit: the diffuse colour takes the place of ambient. Throws
-/// MachineError.
-Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit);
+/// Borrows the planes that the program with the features `compiled` reads, for a pass of `features`: they are
+/// the same, or fewer. Of those, emission and models of their own are hidden from the program. unlit: the
+/// diffuse colour takes the place of ambient. Throws MachineError.
+Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const FeatureSet& features,
+                      const FeatureSet& compiled, bool unlit);
 
 /// The arguments of cull() for these points and lights. tests: see CullArguments.
 CullArguments cullArguments(const Points& points, const LightSet& lights, unsigned group_log2,

@@ -24,11 +24,6 @@ constexpr double kSeenRounding = 5 * kRounding;
 /// the light_error asked for.
 constexpr double kFogRounding = 64 * kRounding;
 
-bool seesFog(const FeatureSet& features) {
-  return features.has(Feature::kFogLinear) || features.has(Feature::kFogExp) ||
-         features.has(Feature::kFogExp2);
-}
-
 glm::dvec3 rgb(const float4& color) { return {color.x, color.y, color.z}; }
 
 /// Upper bound of the error of linear fog's transmittance: five roundings of a difference, its scale and
@@ -63,6 +58,11 @@ double fogShareError(const ShadeFrame& frame, int channel, const glm::dvec3& pos
 }
 
 }  // namespace
+
+bool seesFog(const FeatureSet& features) {
+  return features.has(Feature::kFogLinear) || features.has(Feature::kFogExp) ||
+         features.has(Feature::kFogExp2);
+}
 
 float clusteredError(float light_error, const ShadeFrame& frame, const FeatureSet& features) {
   const glm::dvec3 fog = rgb(frame.fog_color);

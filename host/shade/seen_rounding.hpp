@@ -10,6 +10,9 @@
 // Rounding errors between clustered light and the colours of a picture, for the bounds of their error.
 namespace luciole {
 
+/// Whether a pass with these features sees surfaces through fog.
+bool seesFog(const FeatureSet& features);
+
 /// The error to allow clusters so that colours keep `light_error` after all further rounding. features: of
 /// the program that shades.
 float clusteredError(float light_error, const ShadeFrame& frame, const FeatureSet& features);

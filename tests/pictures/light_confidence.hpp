@@ -59,7 +59,7 @@ struct Rays {
     prepareBeams(device, gbuffer.camera, tree,
                  holes ? std::make_shared<const HoleMasks>(makeHoleMasks(scene, *tree)) : nullptr, 0, beams);
     for (const Light& light : scene.lights) lights.push_back(beamLight(light, true, beams));
-    const Points on_device = pointsOnDevice(device, gbuffer, features, false);
+    const Points on_device = pointsOnDevice(device, gbuffer, features, features, false);
     starts.resize(3 * gbuffer.pixels());
     const Buffer<float> buffer = borrowedForOutput(device, starts);
     rayStarts(device, featureDefines(features),

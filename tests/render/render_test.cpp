@@ -62,6 +62,12 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
   }
 }
 
+/// A device that lights all pictures generally.
+void openGeneral(OpenedDevice& device) {
+  const Setting setting("LUCIOLE_GENERAL", "1");
+  openDevice("", device);
+}
+
 TEST(Render, WhereAllPicturesAreLitGenerallyScenesShareAProgramAndHaveTheBitsOfTheirOwn) {
   Scene foggy = sceneFromJson(kRenderScene), matte = foggy, mapped = foggy;
   matte.fog = {};
@@ -71,10 +77,7 @@ TEST(Render, WhereAllPicturesAreLitGenerallyScenesShareAProgramAndHaveTheBitsOfT
   settings.size = {64, 36};
   settings.camera = foggy.cameras.front();
   OpenedDevice device;
-  {
-    const Setting setting("LUCIOLE_GENERAL", "1");
-    openDevice("", device);
-  }
+  openGeneral(device);
   const auto same = [&](const Scene& scene) {
     Stats stats;
     return renderScene(device, scene, settings, stats).pixels ==
@@ -92,6 +95,38 @@ TEST(Render, WhereAllPicturesAreLitGenerallyScenesShareAProgramAndHaveTheBitsOfT
   const std::size_t more = device.programs.size();
   EXPECT_TRUE(same(matte));
   EXPECT_EQ(device.programs.size(), more);
+}
+
+// Layers leave out emission, and the illuminance fog and models, too. Vertices have no fog yet.
+TEST(Render, LayersAndVerticesThatAreLitGenerallyHaveTheBitsOfTheirOwnPrograms) {
+  Scene scene = sceneFromJson(kRenderScene);
+  for (Material& material : scene.materials) material.emission = {0.3f, 0.2f, 0.1f};
+  OpenedDevice device;
+  openGeneral(device);
+  RenderSettings settings;
+  settings.size = {64, 36};
+  settings.camera = scene.cameras.front();
+  const auto expectSame = [&] {
+    Stats stats;
+    const Image general = renderScene(device, scene, settings, stats);
+    const Image own = renderScene(testDevice(), scene, settings, stats);
+    ASSERT_EQ(general.pixels.size(), own.pixels.size());
+    const std::size_t channels = own.channels.size();
+    for (std::size_t channel = 0; channel < channels; ++channel) {
+      std::size_t different = 0;
+      for (std::size_t i = channel; i < own.pixels.size(); i += channels)
+        different += !(general.pixels[i] == own.pixels[i]);
+      EXPECT_EQ(different, 0u) << "pixels of channel " << own.channels[channel];
+    }
+  };
+  settings.aovs = {Aov::kAmbient, Aov::kDiffuseLight, Aov::kSpecularLight, Aov::kEmission, Aov::kFog,
+                   Aov::kIlluminance};
+  expectSame();
+  scene.materials.front().model = Model::kToon;
+  expectSame();
+  settings.aovs = {};
+  settings.shading = Shading::kGouraud;
+  expectSame();
 }
 
 TEST(Render, PairsAreCountedInAStageOfTheirOwnAndOnlyWhenAskedFor) {
