@@ -119,8 +119,8 @@ TEST(Render, LayersAndVerticesThatAreLitGenerallyHaveTheBitsOfTheirOwnPrograms) 
       EXPECT_EQ(different, 0u) << "pixels of channel " << own.channels[channel];
     }
   };
-  settings.aovs = {Aov::kAmbient, Aov::kDiffuseLight, Aov::kSpecularLight, Aov::kEmission, Aov::kFog,
-                   Aov::kIlluminance};
+  settings.aovs = {Aov::kAmbient,  Aov::kDiffuseLight, Aov::kSpecularLight,
+                   Aov::kEmission, Aov::kFog,          Aov::kIlluminance};
   expectSame();
   scene.materials.front().model = Model::kToon;
   expectSame();
