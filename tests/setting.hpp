@@ -9,7 +9,7 @@ namespace luciole::test {
 /// Sets a variable of the environment, or removes it, until the end of the test.
 class Setting {
  public:
-  Setting(const char* name, std::optional<std::string> value) : name_(name) {
+  Setting(const char* name, const std::optional<std::string>& value) : name_(name) {
     if (const char* old = std::getenv(name)) old_ = old;
     set(value);
   }

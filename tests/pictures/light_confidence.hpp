@@ -219,7 +219,7 @@ struct ConfidenceCheck {
 
 /// The picture with its lights sampled within `shade.light_error`. Channels R G B light_error.R .G .B
 /// light_proof.R .G .B.
-inline Image sampledPicture(OpenedDevice& device, const ShadowedTruth& truth, ShadeSettings shade,
+inline Image sampledPicture(OpenedDevice& device, const ShadowedTruth& truth, const ShadeSettings& shade,
                             Stats& stats) {
   RenderSettings settings;
   settings.shade = shade;
