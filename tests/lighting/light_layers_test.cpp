@@ -8,6 +8,7 @@
 
 #include "image/light_names.hpp"
 #include "lighting/light_layers.hpp"
+#include "long_run.hpp"
 #include "luciole/error.hpp"
 #include "render_json.hpp"
 
@@ -84,7 +85,7 @@ TEST(LightLayers, OfGroupsAndOfPartsAddUpToThePictureBySamplesAndShadowsOfAllKin
     for (const auto& [samples, shading] :
          {std::pair{1, SampleShading::kShared}, std::pair{4, SampleShading::kShared},
           std::pair{3, SampleShading::kAll}}) {
-      RenderSettings settings = settingsFor(scene, {100, 80});
+      RenderSettings settings = settingsFor(scene, longRun() ? glm::ivec2(100, 80) : glm::ivec2(60, 48));
       settings.shade.shadows = method;
       settings.samples = samples;
       settings.sample_shading = shading;

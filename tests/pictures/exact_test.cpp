@@ -62,7 +62,7 @@ class ExactScene : public testing::TestWithParam<std::string> {
   /// Smallest for lanterns, of which each of hundreds of thousands lights every pixel.
   static glm::ivec2 pictureSize(const Scene& scene) {
     return longRun()                       ? glm::ivec2(160, 90)
-           : scene.lights.size() > 100'000 ? glm::ivec2(64, 36)
+           : scene.lights.size() > 100'000 ? glm::ivec2(48, 27)
                                            : glm::ivec2(112, 63);
   }
 };

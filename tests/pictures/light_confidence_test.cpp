@@ -100,7 +100,8 @@ void expectSummed(std::size_t lights, bool highlights, Model model, double round
   light_scene(lights, 0.01, random, scene);
   if (!highlights)
     for (Light& light : scene.lights) light.specular = glm::vec3(0.0f);
-  const ShadowedTruth truth = shadowedTruth(testDevice(), scene, {64, 36}, std::size_t(-1), model);
+  const glm::ivec2 size = longRun() ? glm::ivec2(64, 36) : glm::ivec2(48, 27);
+  const ShadowedTruth truth = shadowedTruth(testDevice(), scene, size, std::size_t(-1), model);
   Stats stats;
   const Image image = sampledPicture(testDevice(), truth, {.light_error = 1e-6f}, stats);
   expectFinite(image);
