@@ -9,9 +9,15 @@ mkdir -p "$folder"/{project/.ci,project/tests,tools}
 cp "$1" "$folder/project/.ci/run"
 # Nothing is installed.
 for tool in debootstrap ccache; do printf '#!/bin/sh\n' >"$folder/tools/$tool"; done
-printf '#!/bin/sh\nsleep 0.3\necho "100%% tests passed here"\n[ ! -e "%s/fails" ]\n' "$folder" >"$folder/project/luciole"
+cat >"$folder/project/luciole" <<'END'
+#!/usr/bin/env bash
+until [[ -e $folder/begun ]]; do sleep 0.1; done
+sleep 0.3
+echo "100% tests passed here"
+[[ ! -e $folder/fails ]]
+END
 chmod +x "$folder"/tools/* "$folder/project/luciole"
-export PATH="$folder/tools:$PATH"
+export folder PATH="$folder/tools:$PATH"
 
 readonly kMinute=60
 readonly kSystemPassed="Debian 13: the tests with label system pass."
@@ -19,7 +25,9 @@ readonly kSystemPassed="Debian 13: the tests with label system pass."
 # runs BEGIN: .ci/run as at minute BEGIN of its time, where the bare root does what standard input says. Its output is in $folder/output,
 # its exit status in `status`.
 runs() {
-  { printf '#!/usr/bin/env bash\n' && cat; } >"$folder/project/tests/bare_root.sh"
+  rm -f "$folder/begun"
+  # shellcheck disable=SC2016  # the stand-in's shell expands $folder
+  { printf '#!/usr/bin/env bash\ntouch "$folder/begun"\n' && cat; } >"$folder/project/tests/bare_root.sh"
   chmod +x "$folder/project/tests/bare_root.sh"
   status=0
   SECONDS=$(($1 * kMinute)) bash "$folder/project/.ci/run" >"$folder/output" 2>&1 </dev/null || status=$?
@@ -63,7 +71,7 @@ MachineThatMakesNoRootIsTold() {
 AllThatPassesEndsWell() {
   runs 60 <<<"echo '$kSystemPassed'; echo '9/9 Test #9: View ... Passed'"
   ends 0 "9/9 Test #9"
-  ! grep -q "NOT FINISHED" "$folder/output" || ends 1 "no word of NOT FINISHED"
+  ! grep "NOT FINISHED" "$folder/output"
 }
 
 FailureHereFailsTheRunAtOnce() {
