@@ -27,8 +27,8 @@ class ProgramTest : public testing::Test {
 
   /// The program's standard output under Oclgrind, which interprets OpenCL; `line` is what follows "luciole".
   /// Tried again where Oclgrind crashes, by a signal or told by the program, or takes minutes instead of
-  /// seconds: Oclgrind 21.10 makes and frees buffers of several threads at once without a lock, and then may
-  /// lose one that a loop reads its end from.
+  /// seconds: Oclgrind 21.10 makes and frees buffers of several threads at once without a lock, and a loop
+  /// over one that it lost may never end.
   std::string underOclgrind(const std::string& line) {
     Outcome outcome;
     for (int tries = 0; tries < 4; ++tries) {
