@@ -79,7 +79,7 @@ void unfilterPaeth(std::uint8_t* row, const std::uint8_t* above, std::size_t byt
     const Bytes from_left = along > -along ? along : -along, from_above = down > -down ? down : -down,
                 from_corner = both > -both ? both : -both;
     const Bytes one = from_above <= from_corner ? up : corner;
-    left = (rest + ((from_left <= from_above) & (from_left <= from_corner) ? left : one)) & 255;
+    left = (rest + (((from_left <= from_above) & (from_left <= from_corner)) ? left : one)) & 255;
     corner = up;
     for (int c = 0; c < kPixelBytes; ++c) row[i + c] = std::uint8_t(left[c]);
   }
