@@ -224,11 +224,32 @@ AnotherArrayMakesWhatNoTaskIsAtAndTakesOverFromOneThatIsKilled() {
 countLines() { grep -c "\"$2\":" "$1/results.jsonl" 2>/dev/null || true; }
 hasChecked() { [[ $(countLines "$1" check) -gt 0 ]]; }
 
+# A ./luciole that halts once it has found something of a point, when the second task runs it first.
+haltSecondTask() {  # haltSecondTask FOLDER
+  rm "$1/luciole"
+  cat >"$1/luciole" <<PROGRAM
+#!/usr/bin/env bash
+if [[ \$SLURM_ARRAY_TASK_ID == 2 && ! -v SLURM_RESTART_COUNT ]]; then
+  ${luciole@Q} "\$@" &
+  until grep -qs '"check":' points/2/results.jsonl; do sleep 0.002; done
+  kill -STOP \$!
+  wait
+else
+  exec ${luciole@Q} "\$@"
+fi
+PROGRAM
+  chmod +x "$1/luciole"
+}
+
+# As many runs of each point as take much longer than halting does.
+kScaleRuns=200
+
 ScaleArrayWithOneKilledAndRequeuedMergesToOneProcess() {
-  local array point run command='./luciole scale scene.json --size 96x54 --lights 1,10,100 --vary culling,tile --repeat 30 -o points/'
+  local array point run command="./luciole scale scene.json --size 96x54 --lights 1,10,100 --vary culling,tile --repeat $kScaleRuns -o points/"
   prepare "$folder/together"
   prepare "$folder/alone"
   mkdir "$folder"/{together,alone}/points
+  haltSecondTask "$folder/together"
   startCluster
   # shellcheck disable=SC2016
   array=$(sbatch --parsable --array=1-4 -D "$folder/together" -o "$folder/%a.out" --wrap "$command"'$SLURM_ARRAY_TASK_ID')
@@ -236,7 +257,7 @@ ScaleArrayWithOneKilledAndRequeuedMergesToOneProcess() {
   await 120 "the second task's first point" hasChecked "$point"
   killAndRequeue "${array}_2"
   # Three of the twelve points are the second task's.
-  (($(countLines "$point" repeat) < 3 * 30)) || fail "the second task was done when it was killed"
+  (($(countLines "$point" repeat) < 3 * kScaleRuns)) || fail "the second task was done when it was killed"
   await 120 "the end of all tasks" hasStates "$array" "4 COMPLETED"
 
   (cd "$folder/alone" && eval "${command}1")
@@ -245,7 +266,7 @@ ScaleArrayWithOneKilledAndRequeuedMergesToOneProcess() {
     grep '"check":' "$folder/$run/merged/results.jsonl" | sort >"$folder/$run/checks"
   done
   expect "number of points" "$(countLines "$folder/together/merged" check)" 12
-  expect "number of runs" "$(countLines "$folder/together/merged" repeat)" $((12 * 30))
+  expect "number of runs" "$(countLines "$folder/together/merged" repeat)" $((12 * kScaleRuns))
   diff "$folder/together/checks" "$folder/alone/checks"
   diff -r "$folder/together/merged/pictures" "$folder/alone/merged/pictures"
 }
